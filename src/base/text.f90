@@ -1,0 +1,110 @@
+!> Strings: numbers to text, lower case, lists, and the nearest right name for a wrong one.
+module text
+  use kinds, only: wp, i8
+  implicit none
+  private
+  public :: str, lowercase, nearest_name, edit_distance, join
+
+  !> A number or a logical as short text.
+  interface str
+    module procedure str_integer, str_long, str_real, str_logical
+  end interface str
+
+contains
+
+  pure function str_integer(value) result(string)
+    integer, intent(in) :: value
+    character(:), allocatable :: string
+    character(16) :: buffer
+    write (buffer, '(i0)') value
+    string = trim(buffer)
+  end function str_integer
+
+  pure function str_long(value) result(string)
+    integer(i8), intent(in) :: value
+    character(:), allocatable :: string
+    character(24) :: buffer
+    write (buffer, '(i0)') value
+    string = trim(buffer)
+  end function str_long
+
+  !> digits: significant digits (default 6); 17 keeps every bit.
+  pure function str_real(value, digits) result(string)
+    real(wp), intent(in) :: value
+    integer, intent(in), optional :: digits
+    character(:), allocatable :: string
+    character(40) :: buffer, format
+    integer :: n
+    n = 6
+    if (present(digits)) n = digits
+    write (format, '(a,i0,a,i0,a)') '(g', n + 10, '.', n, ')'
+    write (buffer, format) value
+    string = trim(adjustl(buffer))
+  end function str_real
+
+  pure function str_logical(value) result(string)
+    logical, intent(in) :: value
+    character(:), allocatable :: string
+    string = trim(merge('true ', 'false', value))
+  end function str_logical
+
+  !> The string with A-Z made a-z.
+  pure function lowercase(string) result(lower)
+    character(*), intent(in) :: string
+    character(len(string)) :: lower
+    integer :: i, c
+    do i = 1, len(string)
+      c = iachar(string(i:i))
+      if (c >= iachar('A') .and. c <= iachar('Z')) c = c + 32
+      lower(i:i) = achar(c)
+    end do
+  end function lowercase
+
+  !> Number of single-character insertions, deletions and substitutions that turn a into b (Levenshtein).
+  pure integer function edit_distance(a, b) result(distance)
+    character(*), intent(in) :: a, b
+    integer :: row(0:len_trim(b)), i, j, diagonal, above
+    row = [(j, j=0, len_trim(b))]
+    do i = 1, len_trim(a)
+      diagonal = row(0)
+      row(0) = i
+      do j = 1, len_trim(b)
+        above = row(j)
+        row(j) = min(above + 1, row(j - 1) + 1, diagonal + merge(0, 1, a(i:i) == b(j:j)))
+        diagonal = above
+      end do
+    end do
+    distance = row(len_trim(b))
+  end function edit_distance
+
+  !> The candidate closest to name, or an empty string if none is near (more than a third of its letters differ).
+  pure function nearest_name(name, candidates) result(nearest)
+    character(*), intent(in) :: name
+    character(*), intent(in) :: candidates(:)
+    character(:), allocatable :: nearest
+    integer :: i, distance, best
+    nearest = ''
+    best = max(2, len_trim(name)/3) + 1
+    do i = 1, size(candidates)
+      distance = edit_distance(lowercase(name), lowercase(candidates(i)))
+      if (distance < best) then
+        best = distance
+        nearest = trim(candidates(i))
+      end if
+    end do
+  end function nearest_name
+
+  !> The strings of a list, trimmed, with a separator between them.
+  pure function join(list, separator) result(string)
+    character(*), intent(in) :: list(:)
+    character(*), intent(in) :: separator
+    character(:), allocatable :: string
+    integer :: i
+    string = ''
+    do i = 1, size(list)
+      if (i > 1) string = string//separator
+      string = string//trim(list(i))
+    end do
+  end function join
+
+end module text

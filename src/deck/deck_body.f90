@@ -1,0 +1,70 @@
+!> &body and &hole (repeated): shapes filled with particles, and shapes cut out of them.
+module deck_body
+  use kinds, only: wp
+  use constants, only: unset
+  use deck_keys, only: key_table, word_length
+  use units, only: of_length, of_velocity
+  implicit none
+  private
+  public :: body_keys, hole_keys
+
+  character(word_length), parameter :: shapes(3) = [character(word_length) :: 'box', 'sphere', 'cylinder']
+
+  !> Bodies of the same name are one body: their union.
+  type, public :: body_group
+    character(word_length) :: name = ''
+    character(word_length) :: material = ''
+    character(word_length) :: shape = ''
+    real(wp) :: lower(3) = unset, upper(3) = unset !< box
+    real(wp) :: center(3) = unset !< sphere
+    real(wp) :: radius = unset !< sphere, cylinder
+    real(wp) :: start(3) = unset, end(3) = unset !< axis of the cylinder
+    real(wp) :: spacing = unset !< of the particles
+    real(wp) :: velocity(3) = 0
+    integer :: line = 0
+  end type body_group
+
+  type, public :: hole_group
+    character(word_length) :: body = '' !< name of the body that it is cut out of
+    character(word_length) :: shape = ''
+    real(wp) :: lower(3) = unset, upper(3) = unset !< box
+    real(wp) :: center(3) = unset !< sphere
+    real(wp) :: radius = unset !< sphere, cylinder
+    real(wp) :: start(3) = unset, end(3) = unset !< axis of the cylinder
+    integer :: line = 0
+  end type hole_group
+
+contains
+
+  subroutine body_keys(group, table)
+    type(body_group), intent(inout), target :: group
+    type(key_table), intent(inout) :: table
+    call table%start('body')
+    call table%add('name', group%name, required=.true.)
+    call table%add('material', group%material, required=.true.)
+    call table%add('shape', group%shape, shapes, required=.true.)
+    call table%add('lower', group%lower, of_length)
+    call table%add('upper', group%upper, of_length)
+    call table%add('center', group%center, of_length)
+    call table%add('radius', group%radius, of_length, more_than=0.0_wp)
+    call table%add('start', group%start, of_length)
+    call table%add('end', group%end, of_length)
+    call table%add('spacing', group%spacing, of_length, more_than=0.0_wp, required=.true.)
+    call table%add('velocity', group%velocity, of_velocity, usual=[-1e5_wp, 1e5_wp])
+  end subroutine body_keys
+
+  subroutine hole_keys(group, table)
+    type(hole_group), intent(inout), target :: group
+    type(key_table), intent(inout) :: table
+    call table%start('hole')
+    call table%add('body', group%body, required=.true.)
+    call table%add('shape', group%shape, shapes, required=.true.)
+    call table%add('lower', group%lower, of_length)
+    call table%add('upper', group%upper, of_length)
+    call table%add('center', group%center, of_length)
+    call table%add('radius', group%radius, of_length, more_than=0.0_wp)
+    call table%add('start', group%start, of_length)
+    call table%add('end', group%end, of_length)
+  end subroutine hole_keys
+
+end module deck_body

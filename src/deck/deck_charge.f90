@@ -1,0 +1,39 @@
+!> &charge (repeated): an explosive of given mass; its size follows from the material's density.
+module deck_charge
+  use kinds, only: wp
+  use constants, only: unset
+  use deck_keys, only: key_table, word_length
+  use units, only: of_length, of_mass
+  implicit none
+  private
+  public :: charge_keys
+
+  type, public :: charge_group
+    character(word_length) :: explosive = '' !< a material with eos 'jwl'
+    real(wp) :: mass = unset !< of the whole charge: symmetry planes cut it
+    character(word_length) :: shape = 'sphere' !< 'sphere', 'cylinder', 'box'
+    real(wp) :: center(3) = unset
+    real(wp) :: axis(3) = [0.0_wp, 0.0_wp, 1.0_wp] !< of the cylinder
+    real(wp) :: length_to_diameter = 1 !< of the cylinder
+    real(wp) :: proportions(3) = 1 !< edges of the box, up to a factor
+    character(word_length) :: detonation = 'instantaneous'
+    integer :: line = 0
+  end type charge_group
+
+contains
+
+  subroutine charge_keys(group, table)
+    type(charge_group), intent(inout), target :: group
+    type(key_table), intent(inout) :: table
+    call table%start('charge')
+    call table%add('explosive', group%explosive, required=.true.)
+    call table%add('mass', group%mass, of_mass, more_than=0.0_wp, usual=[1e-9_wp, 1e8_wp], required=.true.)
+    call table%add('shape', group%shape, [character(word_length) :: 'sphere', 'cylinder', 'box'])
+    call table%add('center', group%center, of_length, required=.true.)
+    call table%add('axis', group%axis)
+    call table%add('length_to_diameter', group%length_to_diameter, more_than=0.0_wp)
+    call table%add('proportions', group%proportions, more_than=0.0_wp)
+    call table%add('detonation', group%detonation, [character(word_length) :: 'instantaneous'])
+  end subroutine charge_keys
+
+end module deck_charge

@@ -1,0 +1,22 @@
+!> &coupling: how flow and solid act on each other.
+module deck_coupling
+  use deck_keys, only: key_table, word_length
+  implicit none
+  private
+  public :: coupling_keys
+
+  type, public :: coupling_group
+    character(word_length) :: method = 'lg_cfibm' !< or 'none'
+    integer :: line = 0
+  end type coupling_group
+
+contains
+
+  subroutine coupling_keys(group, table)
+    type(coupling_group), intent(inout), target :: group
+    type(key_table), intent(inout) :: table
+    call table%start('coupling')
+    call table%add('method', group%method, [character(word_length) :: 'lg_cfibm', 'none'])
+  end subroutine coupling_keys
+
+end module deck_coupling

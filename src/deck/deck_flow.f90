@@ -1,0 +1,35 @@
+!> &flow: the numerics of the flow solver.
+module deck_flow
+  use kinds, only: wp
+  use constants, only: unset
+  use deck_keys, only: key_table, word_length
+  use units, only: of_acceleration, of_pressure
+  implicit none
+  private
+  public :: flow_keys
+
+  type, public :: flow_group
+    real(wp) :: cfl = 0.8_wp !< limit of the sum over directions of (|u|+c) dt/h
+    real(wp) :: trace_fraction = 1e-8_wp !< volume fraction of a material where there is none of it
+    character(word_length) :: limiter = 'venkatakrishnan'
+    character(word_length) :: riemann = 'hllc'
+    real(wp) :: gravity(3) = 0
+    real(wp) :: ambient_pressure = unset !< overpressures are against it; set by the checks from the last 'all' region
+    integer :: line = 0
+  end type flow_group
+
+contains
+
+  subroutine flow_keys(group, table)
+    type(flow_group), intent(inout), target :: group
+    type(key_table), intent(inout) :: table
+    call table%start('flow')
+    call table%add('cfl', group%cfl, more_than=0.0_wp, at_most=1.0_wp)
+    call table%add('trace_fraction', group%trace_fraction, more_than=0.0_wp, at_most=1e-3_wp)
+    call table%add('limiter', group%limiter, [character(word_length) :: 'venkatakrishnan'])
+    call table%add('riemann', group%riemann, [character(word_length) :: 'hllc'])
+    call table%add('gravity', group%gravity, of_acceleration, usual=[-1e4_wp, 1e4_wp])
+    call table%add('ambient_pressure', group%ambient_pressure, of_pressure, usual=[-1e9_wp, 1e9_wp])
+  end subroutine flow_keys
+
+end module deck_flow

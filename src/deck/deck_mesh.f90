@@ -1,0 +1,50 @@
+!> &mesh: the box of cells and the bricks that it is cut into.
+module deck_mesh
+  use kinds, only: wp
+  use constants, only: unset
+  use deck_keys, only: key_table
+  use units, only: of_length
+  implicit none
+  private
+  public :: mesh_keys
+
+  type, public :: mesh_group
+    integer :: cells(3) = 1 !< 1: the dimension is not computed
+    real(wp) :: lower(3) = 0
+    real(wp) :: upper(3) = unset
+    integer :: brick(3) = 0 !< cells of a brick, 0: chosen
+    integer :: line = 0
+  contains
+    procedure :: active
+    procedure :: cell_size
+  end type mesh_group
+
+contains
+
+  !> Which dimensions are computed.
+  pure function active(self)
+    class(mesh_group), intent(in) :: self
+    logical :: active(3)
+    active = self%cells > 1
+  end function active
+
+  !> Edge lengths of a cell (1 in a dimension that is not computed).
+  pure function cell_size(self) result(h)
+    class(mesh_group), intent(in) :: self
+    real(wp) :: h(3)
+    h = 1
+    where (self%cells > 1) h = (self%upper - self%lower)/self%cells
+  end function cell_size
+
+  subroutine mesh_keys(group, table)
+    type(mesh_group), intent(inout), target :: group
+    type(key_table), intent(inout) :: table
+    real(wp), parameter :: usual(2) = [-1e5_wp, 1e5_wp]
+    call table%start('mesh')
+    call table%add('cells', group%cells, at_least=1, required=.true.)
+    call table%add('lower', group%lower, of_length, usual=usual)
+    call table%add('upper', group%upper, of_length, usual=usual, required=.true.)
+    call table%add('brick', group%brick, at_least=0)
+  end subroutine mesh_keys
+
+end module deck_mesh

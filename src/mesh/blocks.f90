@@ -1,0 +1,39 @@
+!> The one container of field data: what a brick holds of a field, ghost layers included.
+module blocks
+  use kinds, only: wp
+  implicit none
+  private
+  public :: allocate_cells, allocate_nodes
+
+  !> Field data of one brick, x fastest. Unallocated where the scene needs nothing of it.
+  type, public :: block
+    real(wp), allocatable :: a(:, :, :, :) !< (x, variable, y, z)
+  end type block
+
+contains
+
+  !> A cell block: cells 1..n and ghost layers; the x rows are padded to whole vectors at the upper end.
+  !> n: cells per direction; ghost: ghost layers per direction; n_var: variables; value: what all entries start with.
+  subroutine allocate_cells(b, n, ghost, n_var, value)
+    type(block), intent(inout) :: b
+    integer, intent(in) :: n(3), ghost(3), n_var
+    real(wp), intent(in) :: value
+    integer, parameter :: vector = 4
+    integer :: width
+    width = n(1) + 2*ghost(1)
+    width = vector*((width + 2*vector - 1)/vector)
+    if (allocated(b%a)) deallocate (b%a)
+    allocate (b%a(1 - ghost(1):width - ghost(1), n_var, 1 - ghost(2):n(2) + ghost(2), 1 - ghost(3):n(3) + ghost(3)))
+    b%a = value
+  end subroutine allocate_cells
+
+  !> A node block: nodes 0..n in each direction, node i being the low corner of cell i+1; all zero.
+  subroutine allocate_nodes(b, n, n_var)
+    type(block), intent(inout) :: b
+    integer, intent(in) :: n(3), n_var
+    if (allocated(b%a)) deallocate (b%a)
+    allocate (b%a(0:n(1), n_var, 0:n(2), 0:n(3)))
+    b%a = 0
+  end subroutine allocate_nodes
+
+end module blocks

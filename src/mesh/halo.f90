@@ -1,0 +1,377 @@
+!> The only communication of fields: *fill* ghost cells from neighbours, *add* what bricks hold of the nodes they share.
+!> A plan is made once per change of the brick set; then each verb is one message per neighbour rank and copies inside a rank.
+module halo
+  use blocks, only: block
+  use kinds, only: wp
+  use mesh, only: mesh_type
+  use mpi_f08, only: MPI_Request, MPI_Irecv, MPI_Isend, MPI_Waitall, MPI_DOUBLE_PRECISION, MPI_STATUSES_IGNORE
+  use parallel, only: world, my_rank => rank, n_ranks
+  implicit none
+  private
+  public :: plan_halo, fill, add
+
+  !> One transfer: the receiver's neighbour in this direction gives it a slab.
+  type :: transfer_type
+    integer :: rank = 0 !< the other side
+    integer :: receiver = 0, giver = 0 !< global brick indices
+    integer :: here = 0 !< local index of the brick of this rank (receiver of what comes, giver of what goes)
+    integer :: there = 0 !< local index of the giver where both are of this rank, else 0
+    integer :: direction(3) = 0 !< from the receiver to the giver
+  end type transfer_type
+
+  !> What comes and what goes, ordered by rank, receiver and direction: the same order on both sides.
+  type, public :: halo_type
+    private
+    type(transfer_type), allocatable :: incoming(:), outgoing(:)
+    real(wp), allocatable :: received(:), sent(:)
+    integer, allocatable :: position(:) !< where each incoming slab starts in received
+    integer, allocatable :: entry(:, :, :, :) !< number of the incoming transfer by direction and local brick, 0 none
+  end type halo_type
+
+  integer, parameter :: tag = 11
+
+contains
+
+  !> Lists the transfers of this rank's bricks.
+  subroutine plan_halo(mesh, halo)
+    type(mesh_type), intent(in) :: mesh
+    type(halo_type), intent(out) :: halo
+    type(transfer_type) :: list(26*mesh%n_local)
+    integer :: other, b, n
+    integer, allocatable :: local_index(:)
+    allocate (local_index(size(mesh%brick)), source=0)
+    do b = 1, mesh%n_local
+      local_index(mesh%local(b)) = b
+    end do
+    n = 0
+    do other = 0, n_ranks - 1
+      do b = 1, mesh%n_local
+        call list_neighbours(mesh, local_index, b, other, list, n)
+      end do
+    end do
+    halo%incoming = list(:n)
+    n = 0
+    do other = 0, n_ranks - 1
+      if (other == my_rank) cycle
+      do b = 1, size(mesh%brick)
+        if (mesh%brick(b)%rank == other) call list_gifts(mesh, local_index, b, list, n)
+      end do
+    end do
+    halo%outgoing = list(:n)
+    allocate (halo%received(0), halo%sent(0), halo%position(size(halo%incoming)))
+    allocate (halo%entry(-1:1, -1:1, -1:1, mesh%n_local), source=0)
+    do n = 1, size(halo%incoming)
+      associate (in => halo%incoming(n))
+        halo%entry(in%direction(1), in%direction(2), in%direction(3), in%here) = n
+      end associate
+    end do
+  end subroutine plan_halo
+
+  !> Neighbours of local brick b that the other rank owns.
+  subroutine list_neighbours(mesh, local_index, b, other, list, n)
+    type(mesh_type), intent(in) :: mesh
+    integer, intent(in) :: local_index(:), b, other
+    type(transfer_type), intent(inout) :: list(:)
+    integer, intent(inout) :: n
+    integer :: i, j, k, giver
+    do k = -1, 1
+      do j = -1, 1
+        do i = -1, 1
+          giver = mesh%brick(mesh%local(b))%neighbour(i, j, k)
+          if (giver == 0 .or. all([i, j, k] == 0)) cycle
+          if (mesh%brick(giver)%rank /= other) cycle
+          n = n + 1
+          list(n) = transfer_type(other, mesh%local(b), giver, b, local_index(giver), [i, j, k])
+        end do
+      end do
+    end do
+  end subroutine list_neighbours
+
+  !> What this rank's bricks give to global brick b of another rank.
+  subroutine list_gifts(mesh, local_index, b, list, n)
+    type(mesh_type), intent(in) :: mesh
+    integer, intent(in) :: local_index(:), b
+    type(transfer_type), intent(inout) :: list(:)
+    integer, intent(inout) :: n
+    integer :: i, j, k, giver
+    do k = -1, 1
+      do j = -1, 1
+        do i = -1, 1
+          giver = mesh%brick(b)%neighbour(i, j, k)
+          if (giver == 0 .or. all([i, j, k] == 0)) cycle
+          if (local_index(giver) == 0) cycle
+          n = n + 1
+          list(n) = transfer_type(mesh%brick(b)%rank, b, giver, local_index(giver), 0, [i, j, k])
+        end do
+      end do
+    end do
+  end subroutine list_gifts
+
+  !> Ghost cells of all local blocks get the values of the neighbours' cells; those outside the domain are left alone.
+  !> n_var: variables 1..n_var travel; only_faces: leave out edges and corners; all blocks must be allocated.
+  subroutine fill(mesh, halo, blocks, n_var, only_faces)
+    type(mesh_type), intent(in) :: mesh
+    type(halo_type), intent(inout) :: halo
+    type(block), intent(inout) :: blocks(:)
+    integer, intent(in) :: n_var
+    logical, intent(in), optional :: only_faces
+    logical :: faces
+    integer :: t, first(3), last(3)
+    faces = .false.
+    if (present(only_faces)) faces = only_faces
+    call transfer_slabs(mesh, halo, blocks, n_var, cells_to_give, faces)
+    do t = 1, size(halo%incoming)
+      associate (in => halo%incoming(t))
+        if (skipped(mesh, in%direction, faces)) cycle
+        call ghosts_to_fill(mesh, in%direction, first, last)
+        call unpack_slab(blocks(in%here), first, last, n_var, halo%received(halo%position(t):))
+      end associate
+    end do
+  end subroutine fill
+
+  !> Each node that bricks share gets the sum of what all of them hold, added in the order of their places: the same bits in
+  !> every sharer, on any number of ranks. A brick with an unallocated block takes no part. n_var: variables 1..n_var are added.
+  subroutine add(mesh, halo, blocks, n_var)
+    type(mesh_type), intent(in) :: mesh
+    type(halo_type), intent(inout) :: halo
+    type(block), intent(inout) :: blocks(:)
+    integer, intent(in) :: n_var
+    integer :: b, i, j, k, slab(-1:1, -1:1, -1:1)
+    call transfer_slabs(mesh, halo, blocks, n_var, nodes_to_give, .false.)
+    do b = 1, mesh%n_local
+      if (.not. allocated(blocks(b)%a)) cycle
+      slab = 0
+      do k = -1, 1
+        do j = -1, 1
+          do i = -1, 1
+            if (halo%entry(i, j, k, b) == 0 .or. skipped(mesh, [i, j, k], .false.)) cycle
+            slab(i, j, k) = halo%position(halo%entry(i, j, k, b))
+          end do
+        end do
+      end do
+      call sum_shared(mesh%brick_cells, slab, halo%received, n_var, blocks(b))
+    end do
+  end subroutine add
+
+  !> Sums the nodes of each face, edge and corner of one brick over its sharers, low ones first.
+  subroutine sum_shared(n, slab, received, n_var, b)
+    integer, intent(in) :: n(3), slab(-1:1, -1:1, -1:1), n_var
+    real(wp), intent(in) :: received(:)
+    type(block), intent(inout) :: b
+    real(wp), allocatable :: total(:, :, :, :)
+    integer :: i, j, k, di, dj, dk, c(3), d(3), first(3), last(3), slab_first(3), slab_last(3)
+    do k = -1, 1
+      do j = -1, 1
+        do i = -1, 1
+          c = [i, j, k]
+          if (all(c == 0)) cycle
+          first = merge(n, merge(0, 1, c < 0), c > 0)
+          last = merge(n, merge(0, n - 1, c < 0), c > 0)
+          if (any(last < first)) cycle
+          allocate (total(first(1):last(1), n_var, first(2):last(2), first(3):last(3)), source=0.0_wp)
+          do dk = min(k, 0), max(k, 0)
+            do dj = min(j, 0), max(j, 0)
+              do di = min(i, 0), max(i, 0)
+                d = [di, dj, dk]
+                if (all(d == 0)) then
+                  total = total + b%a(first(1):last(1), :n_var, first(2):last(2), first(3):last(3))
+                else if (slab(di, dj, dk) > 0) then
+                  slab_first = merge(n, 0, d > 0)
+                  slab_last = merge(0, n, d < 0)
+                  call add_part(received(slab(di, dj, dk):), slab_first, slab_last, n_var, first, last, total)
+                end if
+              end do
+            end do
+          end do
+          b%a(first(1):last(1), :n_var, first(2):last(2), first(3):last(3)) = total
+          deallocate (total)
+        end do
+      end do
+    end do
+  end subroutine sum_shared
+
+  subroutine add_part(buffer, slab_first, slab_last, n_var, first, last, total)
+    integer, intent(in) :: slab_first(3), slab_last(3), n_var, first(3), last(3)
+    real(wp), intent(in) :: buffer(slab_first(1):slab_last(1), n_var, slab_first(2):slab_last(2), slab_first(3):slab_last(3))
+    real(wp), intent(inout) :: total(first(1):, :, first(2):, first(3):)
+    total = total + buffer(first(1):last(1), :, first(2):last(2), first(3):last(3))
+  end subroutine add_part
+
+  !> Brings every incoming slab into halo%received: by copy from this rank's bricks, by one message from each other rank.
+  subroutine transfer_slabs(mesh, halo, blocks, n_var, to_give, faces)
+    type(mesh_type), intent(in) :: mesh
+    type(halo_type), intent(inout) :: halo
+    type(block), intent(in) :: blocks(:)
+    integer, intent(in) :: n_var
+    logical, intent(in) :: faces
+    interface
+      pure subroutine to_give(mesh, direction, first, last)
+        import :: mesh_type
+        type(mesh_type), intent(in) :: mesh
+        integer, intent(in) :: direction(3)
+        integer, intent(out) :: first(3), last(3)
+      end subroutine to_give
+    end interface
+    type(MPI_Request) :: request(2*n_ranks)
+    integer :: t, at, start, n_requests, first(3), last(3), other
+    n_requests = 0
+    at = 1
+    do t = 1, size(halo%incoming)
+      halo%position(t) = at
+      if (skipped(mesh, halo%incoming(t)%direction, faces)) cycle
+      call to_give(mesh, halo%incoming(t)%direction, first, last)
+      at = at + n_var*product(last - first + 1)
+    end do
+    if (size(halo%received) < at) then
+      deallocate (halo%received)
+      allocate (halo%received(at))
+    end if
+    t = 1
+    do while (t <= size(halo%incoming))
+      other = halo%incoming(t)%rank
+      start = halo%position(t)
+      do while (t <= size(halo%incoming))
+        if (halo%incoming(t)%rank /= other) exit
+        t = t + 1
+      end do
+      if (other == my_rank) cycle
+      last(1) = at
+      if (t <= size(halo%incoming)) last(1) = halo%position(t)
+      n_requests = n_requests + 1
+      call MPI_Irecv(halo%received(start), last(1) - start, MPI_DOUBLE_PRECISION, other, tag, world, request(n_requests))
+    end do
+    call send_slabs(mesh, halo, blocks, n_var, to_give, faces, request, n_requests)
+    do t = 1, size(halo%incoming)
+      associate (in => halo%incoming(t))
+        if (in%there == 0 .or. skipped(mesh, in%direction, faces)) cycle
+        call to_give(mesh, in%direction, first, last)
+        call pack_slab(blocks(in%there), first, last, n_var, halo%received(halo%position(t):))
+      end associate
+    end do
+    call MPI_Waitall(n_requests, request(:n_requests), MPI_STATUSES_IGNORE)
+  end subroutine transfer_slabs
+
+  subroutine send_slabs(mesh, halo, blocks, n_var, to_give, faces, request, n_requests)
+    type(mesh_type), intent(in) :: mesh
+    type(halo_type), intent(inout) :: halo
+    type(block), intent(in) :: blocks(:)
+    integer, intent(in) :: n_var
+    logical, intent(in) :: faces
+    interface
+      pure subroutine to_give(mesh, direction, first, last)
+        import :: mesh_type
+        type(mesh_type), intent(in) :: mesh
+        integer, intent(in) :: direction(3)
+        integer, intent(out) :: first(3), last(3)
+      end subroutine to_give
+    end interface
+    type(MPI_Request), intent(inout) :: request(:)
+    integer, intent(inout) :: n_requests
+    integer :: t, at, start, first(3), last(3), other
+    at = 0
+    do t = 1, size(halo%outgoing)
+      if (skipped(mesh, halo%outgoing(t)%direction, faces)) cycle
+      call to_give(mesh, halo%outgoing(t)%direction, first, last)
+      at = at + n_var*product(last - first + 1)
+    end do
+    if (size(halo%sent) < at) then
+      deallocate (halo%sent)
+      allocate (halo%sent(at))
+    end if
+    at = 1
+    t = 1
+    do while (t <= size(halo%outgoing))
+      other = halo%outgoing(t)%rank
+      start = at
+      do while (t <= size(halo%outgoing))
+        associate (out => halo%outgoing(t))
+          if (out%rank /= other) exit
+          if (.not. skipped(mesh, out%direction, faces)) then
+            call to_give(mesh, out%direction, first, last)
+            call pack_slab(blocks(out%here), first, last, n_var, halo%sent(at:))
+            at = at + n_var*product(last - first + 1)
+          end if
+        end associate
+        t = t + 1
+      end do
+      n_requests = n_requests + 1
+      call MPI_Isend(halo%sent(start), at - start, MPI_DOUBLE_PRECISION, other, tag, world, request(n_requests))
+    end do
+  end subroutine send_slabs
+
+  !> A slab across an inactive direction does not exist; edges and corners are left out on demand.
+  pure logical function skipped(mesh, direction, faces)
+    type(mesh_type), intent(in) :: mesh
+    integer, intent(in) :: direction(3)
+    logical, intent(in) :: faces
+    skipped = any(direction /= 0 .and. .not. mesh%active) .or. (faces .and. count(direction /= 0) > 1)
+  end function skipped
+
+  !> Cells of the giver next to the face that it shares with the receiver, who sees it in this direction.
+  pure subroutine cells_to_give(mesh, direction, first, last)
+    type(mesh_type), intent(in) :: mesh
+    integer, intent(in) :: direction(3)
+    integer, intent(out) :: first(3), last(3)
+    first = merge(mesh%brick_cells - mesh%ghost + 1, 1, direction < 0)
+    last = merge(mesh%ghost, mesh%brick_cells, direction > 0)
+  end subroutine cells_to_give
+
+  !> Ghost cells of the receiver in this direction.
+  pure subroutine ghosts_to_fill(mesh, direction, first, last)
+    type(mesh_type), intent(in) :: mesh
+    integer, intent(in) :: direction(3)
+    integer, intent(out) :: first(3), last(3)
+    first = merge(1 - mesh%ghost, merge(mesh%brick_cells + 1, 1, direction > 0), direction < 0)
+    last = merge(0, mesh%brick_cells + merge(mesh%ghost, 0, direction > 0), direction < 0)
+  end subroutine ghosts_to_fill
+
+  !> Nodes of the giver that lie on the face, edge or corner that it shares with the receiver.
+  pure subroutine nodes_to_give(mesh, direction, first, last)
+    type(mesh_type), intent(in) :: mesh
+    integer, intent(in) :: direction(3)
+    integer, intent(out) :: first(3), last(3)
+    first = merge(mesh%brick_cells, 0, direction < 0)
+    last = merge(0, mesh%brick_cells, direction > 0)
+  end subroutine nodes_to_give
+
+  !> Copies a box of a block to a buffer; an unallocated block gives zeros.
+  subroutine pack_slab(b, first, last, n_var, buffer)
+    type(block), intent(in) :: b
+    integer, intent(in) :: first(3), last(3), n_var
+    real(wp), intent(inout) :: buffer(:)
+    integer :: j, k, v, n, at
+    n = last(1) - first(1) + 1
+    if (.not. allocated(b%a)) then
+      buffer(:n_var*product(last - first + 1)) = 0
+      return
+    end if
+    at = 0
+    do k = first(3), last(3)
+      do j = first(2), last(2)
+        do v = 1, n_var
+          buffer(at + 1:at + n) = b%a(first(1):last(1), v, j, k)
+          at = at + n
+        end do
+      end do
+    end do
+  end subroutine pack_slab
+
+  !> Copies a buffer to a box of a block.
+  subroutine unpack_slab(b, first, last, n_var, buffer)
+    type(block), intent(inout) :: b
+    integer, intent(in) :: first(3), last(3), n_var
+    real(wp), intent(in) :: buffer(:)
+    integer :: j, k, v, n, at
+    n = last(1) - first(1) + 1
+    at = 0
+    do k = first(3), last(3)
+      do j = first(2), last(2)
+        do v = 1, n_var
+          b%a(first(1):last(1), v, j, k) = buffer(at + 1:at + n)
+          at = at + n
+        end do
+      end do
+    end do
+  end subroutine unpack_slab
+
+end module halo

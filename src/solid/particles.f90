@@ -1,0 +1,285 @@
+!> Particles of one material in one brick: a structure of arrays, always sorted by (cell, id).
+!>
+!> The order never depends on ranks or on history, so every sum over the particles of a cell has the same bits wherever it is made.
+module particles
+  use kinds, only: wp
+  implicit none
+  private
+  public :: allocate_particles, reserve_particles, note_moved, append_particle, sort_particles, cell_of_particle
+
+  integer, parameter, public :: at_position = 1 !< first of 3 columns: position
+  integer, parameter, public :: at_velocity = 4 !< first of 3 columns: velocity
+  integer, parameter, public :: at_mass = 7 !< mass, constant
+  integer, parameter, public :: at_volume = 8 !< present volume
+  integer, parameter, public :: at_stress = 9 !< first of 6 columns: Cauchy stress xx, yy, zz, yz, xz, xy (tension positive)
+  integer, parameter, public :: at_energy = 15 !< internal energy of the particle (not per mass)
+  integer, parameter, public :: at_viscosity = 16 !< bulk viscosity, a pressure that acts beside the stress
+  integer, parameter, public :: at_plastic_strain = 17 !< equivalent plastic strain
+  integer, parameter, public :: at_damage = 18 !< damage, 0 sound to 1
+  integer, parameter, public :: at_plastic_work = 19 !< plastic work of the particle (an energy)
+  integer, parameter, public :: at_compaction = 20 !< largest compression r/r0 - 1 reached so far (models that compact)
+  integer, parameter, public :: n_fields_basic = 19 !< columns of a model without compaction
+  integer, parameter, public :: n_fields_compacting = 20 !< columns of a model with compaction
+  !> Names of the columns, for output and restart.
+  character(16), parameter, public :: field_name(n_fields_compacting) = [character(16) :: &
+    'position_x', 'position_y', 'position_z', 'velocity_x', 'velocity_y', 'velocity_z', 'mass', 'volume', &
+    'stress_xx', 'stress_yy', 'stress_zz', 'stress_yz', 'stress_xz', 'stress_xy', 'internal_energy', 'viscosity', &
+    'plastic_strain', 'damage', 'plastic_work', 'compaction']
+
+  !> Particles of one set (material) in one brick.
+  type, public :: particle_block
+    integer :: n = 0 !< particles held
+    integer :: capacity = 0 !< room of the arrays
+    integer, allocatable :: id(:) !< global number, unique in the scene
+    integer, allocatable :: body(:) !< body it belongs to
+    real(wp), allocatable :: f(:, :) !< (capacity, n_field) columns at_*
+    integer, allocatable :: cell_start(:) !< (n_cells + 1) first particle of each cell of the brick, x fastest
+    integer :: n_moved = 0 !< particles that wait for the next sort
+    integer, allocatable :: moved_index(:) !< their indices, ascending
+    integer, allocatable :: moved_cell(:) !< their new cells; 0: gone from this brick
+  end type particle_block
+
+contains
+
+  !> An empty block for n_cells cells and n_field columns.
+  subroutine allocate_particles(block, n_cells, n_field)
+    type(particle_block), intent(inout) :: block
+    integer, intent(in) :: n_cells, n_field
+    block%n = 0
+    block%capacity = 0
+    block%n_moved = 0
+    allocate (block%id(0), block%body(0), block%f(0, n_field), block%moved_index(0), block%moved_cell(0))
+    allocate (block%cell_start(n_cells + 1), source=1)
+  end subroutine allocate_particles
+
+  !> Makes room for at least n particles; the contents stay.
+  subroutine reserve_particles(block, n)
+    type(particle_block), intent(inout) :: block
+    integer, intent(in) :: n
+    integer :: capacity
+    integer, allocatable :: integers(:)
+    real(wp), allocatable :: reals(:, :)
+    if (n <= block%capacity) return
+    capacity = (max(n + n/8, 64)/8 + 1)*8
+    allocate (integers(capacity), source=0)
+    integers(:block%n) = block%id(:block%n)
+    call move_alloc(integers, block%id)
+    allocate (integers(capacity), source=0)
+    integers(:block%n) = block%body(:block%n)
+    call move_alloc(integers, block%body)
+    allocate (reals(capacity, size(block%f, 2)), source=0.0_wp)
+    reals(:block%n, :) = block%f(:block%n, :)
+    call move_alloc(reals, block%f)
+    block%capacity = capacity
+  end subroutine reserve_particles
+
+  !> Notes that particle index belongs in another cell (0: that it leaves the brick). Indices must come in ascending order.
+  subroutine note_moved(block, index, cell)
+    type(particle_block), intent(inout) :: block
+    integer, intent(in) :: index, cell
+    integer, allocatable :: longer(:)
+    integer :: n
+    n = block%n_moved
+    if (n == size(block%moved_index)) then
+      allocate (longer(2*n + 64), source=0)
+      longer(:n) = block%moved_index(:n)
+      call move_alloc(longer, block%moved_index)
+      allocate (longer(2*n + 64), source=0)
+      longer(:n) = block%moved_cell(:n)
+      call move_alloc(longer, block%moved_cell)
+    end if
+    block%n_moved = n + 1
+    block%moved_index(n + 1) = index
+    block%moved_cell(n + 1) = cell
+  end subroutine note_moved
+
+  !> Adds a particle that arrives in a cell; it takes its place in the next sort. All note_moved calls for resident particles come first.
+  subroutine append_particle(block, id, body, fields, cell)
+    type(particle_block), intent(inout) :: block
+    integer, intent(in) :: id, body, cell
+    real(wp), intent(in) :: fields(:)
+    call reserve_particles(block, block%n + 1)
+    block%n = block%n + 1
+    block%id(block%n) = id
+    block%body(block%n) = body
+    block%f(block%n, :) = fields
+    call note_moved(block, block%n, cell)
+  end subroutine append_particle
+
+  !> Puts the block in (cell, id) order again after note_moved and append_particle; does nothing when nothing moved.
+  !>
+  !> Resident particles keep their order, so only the moved ones are sorted (counting sort by cell, insertion by id) and merged in;
+  !> the columns are then moved by runs, and runs that stay in place are not touched.
+  subroutine sort_particles(block)
+    type(particle_block), intent(inout) :: block
+    integer, allocatable :: arriving(:), first(:), run_from(:), run_to(:), run_length(:), new_start(:), integers(:)
+    real(wp), allocatable :: column(:)
+    integer :: n_cells, n_resident, n_runs, cell, i, k, low, high, leaving, position, source, stop_at, total
+    if (block%n_moved == 0) return
+    n_cells = size(block%cell_start) - 1
+    n_resident = block%cell_start(n_cells + 1) - 1
+    call sort_arrivals(block, n_cells, arriving, first)
+    allocate (run_from(4*block%n_moved + 4), run_to(4*block%n_moved + 4), run_length(4*block%n_moved + 4), new_start(n_cells + 1))
+    n_runs = 0
+    leaving = 1
+    total = 0
+    do cell = 1, n_cells
+      new_start(cell) = total + 1
+      position = first(cell)
+      source = block%cell_start(cell)
+      stop_at = block%cell_start(cell + 1)
+      if (position < first(cell + 1) .or. next_leaving() < stop_at) then
+        do while (source < stop_at .or. position < first(cell + 1))
+          if (source < stop_at) then
+            if (next_leaving() == source) then
+              source = source + 1
+              leaving = leaving + 1
+              cycle
+            end if
+          end if
+          if (position < first(cell + 1) .and. source < stop_at) then
+            if (block%id(arriving(position)) < block%id(source)) then
+              call add_run(arriving(position), 1)
+              position = position + 1
+            else
+              call add_run(source, 1)
+              source = source + 1
+            end if
+          else if (source < stop_at) then
+            call add_run(source, 1)
+            source = source + 1
+          else
+            call add_run(arriving(position), 1)
+            position = position + 1
+          end if
+        end do
+      else
+        call add_run(source, stop_at - source)
+      end if
+    end do
+    new_start(n_cells + 1) = total + 1
+    block%cell_start = new_start
+
+    low = huge(low)
+    high = 0
+    do k = 1, n_runs
+      if (run_from(k) == run_to(k)) cycle
+      low = min(low, run_from(k), run_to(k))
+      high = max(high, run_from(k) + run_length(k) - 1, run_to(k) + run_length(k) - 1)
+    end do
+    if (high > 0) then
+      allocate (column(low:high), integers(low:high))
+      integers = block%id(low:high)
+      call place_integers(block%id)
+      integers = block%body(low:high)
+      call place_integers(block%body)
+      do i = 1, size(block%f, 2)
+        column = block%f(low:high, i)
+        do k = 1, n_runs
+          if (run_from(k) == run_to(k)) cycle
+          block%f(run_to(k):run_to(k) + run_length(k) - 1, i) = column(run_from(k):run_from(k) + run_length(k) - 1)
+        end do
+      end do
+    end if
+    block%n = total
+    block%n_moved = 0
+
+  contains
+
+    integer function next_leaving()
+      next_leaving = huge(next_leaving)
+      if (leaving <= block%n_moved) then
+        if (block%moved_index(leaving) <= n_resident) next_leaving = block%moved_index(leaving)
+      end if
+    end function next_leaving
+
+    subroutine add_run(from, length)
+      integer, intent(in) :: from, length
+      integer, allocatable :: longer(:)
+      if (length == 0) return
+      if (n_runs > 0) then
+        if (run_from(n_runs) + run_length(n_runs) == from) then
+          run_length(n_runs) = run_length(n_runs) + length
+          total = total + length
+          return
+        end if
+      end if
+      if (n_runs == size(run_from)) then
+        allocate (longer(2*n_runs))
+        longer(:n_runs) = run_from
+        call move_alloc(longer, run_from)
+        allocate (longer(2*n_runs))
+        longer(:n_runs) = run_to
+        call move_alloc(longer, run_to)
+        allocate (longer(2*n_runs))
+        longer(:n_runs) = run_length
+        call move_alloc(longer, run_length)
+      end if
+      n_runs = n_runs + 1
+      run_from(n_runs) = from
+      run_to(n_runs) = total + 1
+      run_length(n_runs) = length
+      total = total + length
+    end subroutine add_run
+
+    subroutine place_integers(values)
+      integer, intent(inout) :: values(:)
+      integer :: run
+      do run = 1, n_runs
+        if (run_from(run) == run_to(run)) cycle
+        values(run_to(run):run_to(run) + run_length(run) - 1) = integers(run_from(run):run_from(run) + run_length(run) - 1)
+      end do
+    end subroutine place_integers
+
+  end subroutine sort_particles
+
+  !> Indices of the moved particles that stay in this brick, in (cell, id) order; first(cell) is where a cell's list starts.
+  subroutine sort_arrivals(block, n_cells, arriving, first)
+    type(particle_block), intent(in) :: block
+    integer, intent(in) :: n_cells
+    integer, allocatable, intent(out) :: arriving(:), first(:)
+    integer :: i, j, cell, index
+    integer, allocatable :: fill(:)
+    allocate (first(n_cells + 1), fill(n_cells), source=0)
+    do i = 1, block%n_moved
+      cell = block%moved_cell(i)
+      if (cell > 0) first(cell + 1) = first(cell + 1) + 1
+    end do
+    first(1) = 1
+    do cell = 1, n_cells
+      first(cell + 1) = first(cell + 1) + first(cell)
+    end do
+    allocate (arriving(first(n_cells + 1) - 1))
+    do i = 1, block%n_moved
+      cell = block%moved_cell(i)
+      if (cell == 0) cycle
+      index = block%moved_index(i)
+      j = first(cell) + fill(cell)
+      do while (j > first(cell))
+        if (block%id(arriving(j - 1)) < block%id(index)) exit
+        arriving(j) = arriving(j - 1)
+        j = j - 1
+      end do
+      arriving(j) = index
+      fill(cell) = fill(cell) + 1
+    end do
+  end subroutine sort_arrivals
+
+  !> The cell of the brick that holds particle index, by bisection of cell_start.
+  pure integer function cell_of_particle(block, index) result(cell)
+    type(particle_block), intent(in) :: block
+    integer, intent(in) :: index
+    integer :: high, middle
+    cell = 1
+    high = size(block%cell_start)
+    do while (high - cell > 1)
+      middle = (cell + high)/2
+      if (block%cell_start(middle) <= index) then
+        cell = middle
+      else
+        high = middle
+      end if
+    end do
+  end function cell_of_particle
+
+end module particles
