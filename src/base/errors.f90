@@ -3,6 +3,7 @@ module errors
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mpi_f08, only: MPI_Abort, MPI_Initialized
   use parallel, only: world
+  use process, only: exit_process
   implicit none
   private
   public :: fatal, warn, fatal_handler
@@ -51,17 +52,5 @@ contains
     if (started) call MPI_Abort(world, status)
     call exit_process(status)
   end subroutine abort_all
-
-  subroutine exit_process(status)
-    use, intrinsic :: iso_c_binding, only: c_int
-    integer, intent(in) :: status
-    interface
-      subroutine c_exit(status) bind(c, name='exit')
-        import :: c_int
-        integer(c_int), value :: status
-      end subroutine c_exit
-    end interface
-    call c_exit(int(status, c_int))
-  end subroutine exit_process
 
 end module errors

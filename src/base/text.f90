@@ -28,19 +28,58 @@ contains
     string = trim(buffer)
   end function str_long
 
-  !> digits: significant digits (default 6); 17 keeps every bit.
+  !> The shortest text with this many significant digits (default 6; 17 keeps every bit): 0.0125, 75, 1.3e-06.
   pure function str_real(value, digits) result(string)
     real(wp), intent(in) :: value
     integer, intent(in), optional :: digits
     character(:), allocatable :: string
     character(40) :: buffer, format
-    integer :: n
+    integer :: n, decimals
     n = 6
     if (present(digits)) n = digits
-    write (format, '(a,i0,a,i0,a)') '(g', n + 10, '.', n, ')'
-    write (buffer, format) value
-    string = trim(adjustl(buffer))
+    if (abs(value) >= 1e-3_wp .and. abs(value) < 1e6_wp) then
+      decimals = max(n - 1 - floor(log10(abs(value))), 0)
+      write (format, '(a,i0,a)') '(f0.', decimals, ')'
+      write (buffer, format) value
+      string = trim(without_zeros(buffer))
+      if (string(1:1) == '.') string = '0'//string
+      if (len(string) > 1) then
+        if (string(1:2) == '-.') string = '-0'//string(2:)
+      end if
+    else if (abs(value) <= 0) then
+      string = '0'
+    else
+      write (format, '(a,i0,a)') '(es40.', n - 1, 'e3)'
+      write (buffer, format) value
+      buffer = adjustl(buffer)
+      string = trim(without_zeros(buffer(:scan(buffer, 'E') - 1)))//exponent_text(buffer(scan(buffer, 'E') + 1:))
+    end if
   end function str_real
+
+  !> A number without the zeros that end its decimals, nor the point if nothing is left of them.
+  pure function without_zeros(number) result(short)
+    character(*), intent(in) :: number
+    character(:), allocatable :: short
+    short = trim(adjustl(number))
+    if (index(short, '.') == 0) return
+    do while (short(len(short):) == '0')
+      short = short(:len(short) - 1)
+    end do
+    if (short(len(short):) == '.') short = short(:len(short) - 1)
+  end function without_zeros
+
+  !> 'e-06' from '-006'; nothing for a number that has no exponent (infinite, not a number).
+  pure function exponent_text(exponent) result(short)
+    character(*), intent(in) :: exponent
+    character(:), allocatable :: short
+    integer :: value, status
+    character(8) :: buffer
+    short = ''
+    read (exponent, *, iostat=status) value
+    if (status /= 0) return
+    write (buffer, '(i0.2)') abs(value)
+    short = 'e'//trim(merge('-', '+', value < 0))//trim(buffer)
+  end function exponent_text
 
   pure function str_logical(value) result(string)
     logical, intent(in) :: value

@@ -39,7 +39,7 @@ contains
   subroutine body_keys(group, table)
     type(body_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
-    call table%start('body')
+    call table%start('body', group%line)
     call table%add('name', group%name, required=.true.)
     call table%add('material', group%material, required=.true.)
     call table%add('shape', group%shape, shapes, required=.true.)
@@ -56,7 +56,7 @@ contains
   subroutine hole_keys(group, table)
     type(hole_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
-    call table%start('hole')
+    call table%start('hole', group%line)
     call table%add('body', group%body, required=.true.)
     call table%add('shape', group%shape, shapes, required=.true.)
     call table%add('lower', group%lower, of_length)

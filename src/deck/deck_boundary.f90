@@ -55,7 +55,7 @@ contains
   subroutine boundary_keys(group, table)
     type(boundary_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
-    call table%start('boundary')
+    call table%start('boundary', group%line)
     call table%add('x_low', group%x_low, flow_faces)
     call table%add('x_high', group%x_high, flow_faces)
     call table%add('y_low', group%y_low, flow_faces)

@@ -25,7 +25,7 @@ contains
   subroutine charge_keys(group, table)
     type(charge_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
-    call table%start('charge')
+    call table%start('charge', group%line)
     call table%add('explosive', group%explosive, required=.true.)
     call table%add('mass', group%mass, of_mass, more_than=0.0_wp, usual=[1e-9_wp, 1e8_wp], required=.true.)
     call table%add('shape', group%shape, [character(word_length) :: 'sphere', 'cylinder', 'box'])

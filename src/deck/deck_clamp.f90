@@ -20,7 +20,7 @@ contains
   subroutine clamp_keys(group, table)
     type(clamp_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
-    call table%start('clamp')
+    call table%start('clamp', group%line)
     call table%add('lower', group%lower, of_length, required=.true.)
     call table%add('upper', group%upper, of_length, required=.true.)
     call table%add('fixed', group%fixed, [character(word_length) :: 'x', 'y', 'z', 'xy', 'xz', 'yz', 'xyz'])

@@ -15,7 +15,7 @@ contains
   subroutine coupling_keys(group, table)
     type(coupling_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
-    call table%start('coupling')
+    call table%start('coupling', group%line)
     call table%add('method', group%method, [character(word_length) :: 'lg_cfibm', 'none'])
   end subroutine coupling_keys
 

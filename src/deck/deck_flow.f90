@@ -23,7 +23,7 @@ contains
   subroutine flow_keys(group, table)
     type(flow_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
-    call table%start('flow')
+    call table%start('flow', group%line)
     call table%add('cfl', group%cfl, more_than=0.0_wp, at_most=1.0_wp)
     call table%add('trace_fraction', group%trace_fraction, more_than=0.0_wp, at_most=1e-3_wp)
     call table%add('limiter', group%limiter, [character(word_length) :: 'venkatakrishnan'])

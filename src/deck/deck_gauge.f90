@@ -20,7 +20,7 @@ contains
   subroutine gauge_keys(group, table)
     type(gauge_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
-    call table%start('gauge')
+    call table%start('gauge', group%line)
     call table%add('name', group%name, required=.true.)
     call table%add('kind', group%kind, [character(word_length) :: 'flow', 'solid'])
     call table%add('position', group%position, of_length, required=.true.)

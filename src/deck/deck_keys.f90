@@ -24,7 +24,8 @@ module deck_keys
     character(word_length), allocatable :: allowed(:) !< words; unallocated: any text
     integer :: line = 0 !< where the deck gives it, 0 where it does not
     logical :: from_option = .false. !< given on the command line
-    logical :: given(3) = .false. !< which elements the deck gives
+    logical :: bad = .false. !< what the deck gives cannot be used, and this was noted
+    logical, allocatable :: given(:) !< which elements the deck gives
     real(wp), pointer :: real_value => null()
     real(wp), pointer :: real_values(:) => null()
     integer, pointer :: integer_value => null()
@@ -42,13 +43,15 @@ module deck_keys
   type, public :: key_table
     character(32) :: group = ''
     integer :: index = 1 !< which of the groups of this name
-    integer :: line = 0 !< where the group starts, 0 if the deck has none
+    integer, pointer :: line => null() !< where the group starts (kept in the group), 0 if the deck has none
+    logical :: incomplete = .false. !< part of the group could not be read: no check of what it lacks
     integer :: n = 0 !< number of keys
     type(key_type), allocatable :: key(:)
   contains
     procedure :: start
     procedure :: find
     procedure :: is_given
+    procedure :: is_bad
     procedure :: line_of
     procedure, private :: add_real, add_reals, add_integer, add_integers, add_logical, add_text
     generic :: add => add_real, add_reals, add_integer, add_integers, add_logical, add_text
@@ -56,13 +59,15 @@ module deck_keys
 
 contains
 
-  !> Empties the table for the group of this name.
-  subroutine start(self, group)
+  !> Empties the table for the group of this name, whose line in the deck stands in `line`.
+  subroutine start(self, group, line)
     class(key_table), intent(inout) :: self
     character(*), intent(in) :: group
+    integer, intent(inout), target :: line
     self%group = group
     self%index = 1
-    self%line = 0
+    self%line => line
+    self%incomplete = .false.
     self%n = 0
     if (allocated(self%key)) deallocate (self%key)
     allocate (self%key(16))
@@ -87,6 +92,16 @@ contains
     is_given = .false.
     if (i > 0) is_given = any(self%key(i)%given)
   end function is_given
+
+  !> True if what the deck gives for the key could not be used.
+  pure logical function is_bad(self, name)
+    class(key_table), intent(in) :: self
+    character(*), intent(in) :: name
+    integer :: i
+    i = self%find(name)
+    is_bad = .false.
+    if (i > 0) is_bad = self%key(i)%bad
+  end function is_bad
 
   !> Line of the key, or of its group where the deck does not give the key.
   pure integer function line_of(self, name) result(line)
@@ -184,6 +199,7 @@ contains
     self%key(self%n)%name = name
     self%key(self%n)%kind = kind
     self%key(self%n)%n = n
+    allocate (self%key(self%n)%given(n), source=.false.)
     if (present(required)) self%key(self%n)%required = required
   end subroutine append
 

@@ -52,7 +52,7 @@ contains
     type(material_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
     real(wp), parameter :: usual_modulus(2) = [1e6_wp, 1.5e12_wp], usual_strength(2) = [1e4_wp, 1e10_wp], none = 0
-    call table%start('material')
+    call table%start('material', group%line)
     call table%add('name', group%name, required=.true.)
     call table%add('library', group%library)
     call table%add('eos', group%eos, eos_names)

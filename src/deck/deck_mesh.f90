@@ -40,7 +40,7 @@ contains
     type(mesh_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
     real(wp), parameter :: usual(2) = [-1e5_wp, 1e5_wp]
-    call table%start('mesh')
+    call table%start('mesh', group%line)
     call table%add('cells', group%cells, at_least=1, required=.true.)
     call table%add('lower', group%lower, of_length, usual=usual)
     call table%add('upper', group%upper, of_length, usual=usual, required=.true.)

@@ -1,6 +1,7 @@
 !> &output: what is written, where, and how often.
 module deck_output
   use kinds, only: wp
+  use constants, only: unset
   use deck_keys, only: key_table, path_length
   use units, only: of_time
   implicit none
@@ -10,6 +11,7 @@ module deck_output
   type, public :: output_group
     character(path_length) :: directory = '' !< set by the checks to runs/<deck name>
     real(wp) :: snapshot_interval = 0 !< time, 0: only first and last
+    real(wp) :: snapshot_times(50) = unset !< more snapshots, at these times
     real(wp) :: gauge_interval = 0 !< time, 0: every step
     integer :: history_interval = 1 !< steps
     real(wp) :: restart_interval = 0 !< time, 0: only when stopped
@@ -24,9 +26,10 @@ contains
   subroutine output_keys(group, table)
     type(output_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
-    call table%start('output')
+    call table%start('output', group%line)
     call table%add('directory', group%directory)
     call table%add('snapshot_interval', group%snapshot_interval, of_time, at_least=0.0_wp)
+    call table%add('snapshot_times', group%snapshot_times, of_time, at_least=0.0_wp)
     call table%add('gauge_interval', group%gauge_interval, of_time, at_least=0.0_wp)
     call table%add('history_interval', group%history_interval, at_least=1)
     call table%add('restart_interval', group%restart_interval, of_time, at_least=0.0_wp)

@@ -1,9 +1,10 @@
 !> A list of what is wrong with a deck, so that all of it is told at once, in the order of the lines.
 module deck_problems
+  use deck_keys, only: key_table
   use text, only: str, join, nearest_name
   implicit none
   private
-  public :: nearest_or_allowed
+  public :: group_place, nearest_or_allowed
 
   type :: problem_type
     integer :: line = 0
@@ -13,10 +14,13 @@ module deck_problems
   !> Problems of one deck. `file` is the name before the line number, which `add` can replace.
   type, public :: problem_list
     character(:), allocatable :: file
+    logical :: has_lines = .true. !< false: line numbers mean nothing (text from the command line)
     integer :: n = 0
     type(problem_type), allocatable, private :: problem(:)
   contains
     procedure :: add
+    procedure :: add_at_key
+    procedure :: take
     procedure :: message
     procedure :: all_messages
   end type problem_list
@@ -30,36 +34,69 @@ contains
     character(*), intent(in) :: place !< '&group key', or empty
     character(*), intent(in) :: reason
     character(*), intent(in), optional :: file !< instead of the deck's
-    type(problem_type), allocatable :: larger(:)
-    type(problem_type) :: new
-    integer :: i
+    character(:), allocatable :: message
     if (.not. allocated(self%file)) self%file = 'deck'
+    message = self%file
+    if (present(file)) message = file
+    if (line > 0 .and. self%has_lines) message = message//':'//str(line)
+    message = message//': '
+    if (place /= '') message = message//trim(place)//': '
+    call insert(self, merge(0, line, present(file)), message//reason)
+  end subroutine add
+
+  ! Puts a message behind all that have the same line or an earlier one, unless it is there already.
+  subroutine insert(self, line, message)
+    class(problem_list), intent(inout) :: self
+    integer, intent(in) :: line
+    character(*), intent(in) :: message
+    type(problem_type), allocatable :: larger(:)
+    integer :: i
     if (.not. allocated(self%problem)) allocate (self%problem(8))
-    new%message = self%file
-    if (present(file)) new%message = file
-    if (line > 0) new%message = new%message//':'//str(line)
-    new%message = new%message//': '
-    if (place /= '') new%message = new%message//trim(place)//': '
-    new%message = new%message//reason
-    new%line = merge(0, line, present(file))
     do i = 1, self%n
-      if (self%problem(i)%message == new%message) return
+      if (self%problem(i)%message == message) return
     end do
     if (self%n == size(self%problem)) then
       allocate (larger(2*self%n))
       larger(1:self%n) = self%problem
       call move_alloc(larger, self%problem)
     end if
-    ! insertion behind all that have the same line or an earlier one
     i = self%n
     do while (i > 0)
-      if (self%problem(i)%line <= new%line) exit
+      if (self%problem(i)%line <= line) exit
       self%problem(i + 1) = self%problem(i)
       i = i - 1
     end do
-    self%problem(i + 1) = new
+    self%problem(i + 1)%line = line
+    self%problem(i + 1)%message = message
     self%n = self%n + 1
-  end subroutine add
+  end subroutine insert
+
+  !> Notes a problem with a key (or, with an empty key, a group), where the deck gives it.
+  subroutine add_at_key(self, table, key, reason)
+    class(problem_list), intent(inout) :: self
+    type(key_table), intent(in) :: table
+    character(*), intent(in) :: key
+    character(*), intent(in) :: reason
+    integer :: k
+    k = table%find(key)
+    if (k > 0) then
+      if (table%key(k)%from_option) then
+        call self%add(0, group_place(table, key), reason, file='--set')
+        return
+      end if
+    end if
+    call self%add(table%line_of(key), group_place(table, key), reason)
+  end subroutine add_at_key
+
+  !> Takes over the problems of another list as they are.
+  subroutine take(self, other)
+    class(problem_list), intent(inout) :: self
+    type(problem_list), intent(in) :: other
+    integer :: i
+    do i = 1, other%n
+      call insert(self, 0, other%problem(i)%message)
+    end do
+  end subroutine take
 
   !> The text of problem i.
   pure function message(self, i)
@@ -98,5 +135,15 @@ contains
       advice = advice//' ('//what//': '//join(candidates, ', ')//')'
     end if
   end function nearest_or_allowed
+
+  !> '&group key', with the number of the group if it is not the first of its name.
+  pure function group_place(table, key) result(place)
+    type(key_table), intent(in) :: table
+    character(*), intent(in) :: key
+    character(:), allocatable :: place
+    place = '&'//trim(table%group)
+    if (table%index > 1) place = place//'('//str(table%index)//')'
+    if (key /= '') place = place//' '//key
+  end function group_place
 
 end module deck_problems

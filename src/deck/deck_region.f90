@@ -27,7 +27,7 @@ contains
   subroutine region_keys(group, table)
     type(region_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
-    call table%start('region')
+    call table%start('region', group%line)
     call table%add('shape', group%shape, [character(word_length) :: 'all', 'box', 'sphere', 'cylinder', 'half_space'], &
       required=.true.)
     call table%add('material', group%material, required=.true.)

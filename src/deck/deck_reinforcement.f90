@@ -24,7 +24,7 @@ contains
   subroutine reinforcement_keys(group, table)
     type(reinforcement_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
-    call table%start('reinforcement')
+    call table%start('reinforcement', group%line)
     call table%add('body', group%body, required=.true.)
     call table%add('material', group%material, required=.true.)
     call table%add('diameter', group%diameter, of_length, more_than=0.0_wp, required=.true.)

@@ -14,7 +14,7 @@ module deck_run
     real(wp) :: end_time = unset
     integer :: max_steps = huge(1)
     real(wp) :: wall_limit = 0 !< seconds of wall time, 0: none
-    integer :: report_interval = 20 !< steps
+    integer :: report_interval = 100 !< steps
     integer :: line = 0 !< of the group in the deck
   end type run_group
 
@@ -24,7 +24,7 @@ contains
   subroutine run_keys(group, table)
     type(run_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
-    call table%start('run')
+    call table%start('run', group%line)
     call table%add('title', group%title)
     call table%add('units', group%units, allowed=unit_system_names)
     call table%add('end_time', group%end_time, of_time, more_than=0.0_wp, usual=[1e-9_wp, 1e3_wp], required=.true.)

@@ -97,7 +97,7 @@ contains
     clean = text
     first = 1
     if (len(text) >= 3) then
-      if (text(1:3) == achar(239)//achar(187)//achar(191)) first = 4
+      if (text(1:3) == char(239)//char(187)//char(191)) first = 4
     end if
     n = 0
     do i = first, len(text)
@@ -446,7 +446,11 @@ contains
       if (star > 1) then
         if (verify(value%text(1:star - 1), '0123456789') == 0) then
           read (value%text(1:star - 1), *, iostat=status) value%repeats
-          if (status == 0 .and. value%repeats > 0) value%text = value%text(star + 1:)
+          if (status == 0 .and. value%repeats > 0) then
+            value%text = value%text(star + 1:)
+          else
+            value%repeats = 1
+          end if
           if (value%text == '' .and. token(i + 1)%kind == is_string .and. token(i + 1)%touches) then
             i = i + 1
             value%quoted = .true.

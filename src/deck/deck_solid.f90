@@ -21,7 +21,7 @@ contains
   subroutine solid_keys(group, table)
     type(solid_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
-    call table%start('solid')
+    call table%start('solid', group%line)
     call table%add('scheme', group%scheme, [character(word_length) :: 'musl'])
     call table%add('cfl', group%cfl, more_than=0.0_wp, at_most=1.0_wp)
     call table%add('gravity', group%gravity, of_acceleration, usual=[-1e4_wp, 1e4_wp])

@@ -55,8 +55,8 @@ contains
     character(24) :: field
     character(:), allocatable :: row
     if (.not. is_root()) return
-    if (size(values) /= table%n_columns) call fatal('"'//table%file//'" has '//str(table%n_columns)//' columns and got a row of '// &
-      str(size(values)))
+    if (size(values) /= table%n_columns) call fatal('"'//table%file//'" has '//str(table%n_columns)// &
+      ' columns and got a row of '//str(size(values)))
     row = ''
     do i = 1, size(values)
       write (field, '(es24.16e3)') values(i)
@@ -90,6 +90,7 @@ contains
     real(wp), intent(in) :: time
     logical, intent(out) :: resumed
     integer :: old, new, status
+    integer(i8) :: taken, there
     character(:), allocatable :: line
     real(wp) :: row_time
     resumed = .false.
@@ -99,7 +100,9 @@ contains
     end if
     open (newunit=old, file=table%file, status='old', action='read', iostat=status)
     if (status /= 0) call fatal('can''t read "'//table%file//'"')
+    inquire (unit=old, size=there)
     call read_line(old, line, status)
+    taken = len(line) + 1
     if (line /= head) then
       close (old)
       call rename_file(table%file, table%file//'.old')
@@ -111,7 +114,8 @@ contains
     write (new, '(a)') head
     do
       call read_line(old, line, status)
-      if (status /= 0 .or. commas(line) /= table%n_columns - 1) exit
+      taken = taken + len(line) + 1
+      if (status /= 0 .or. taken > there .or. commas(line) /= table%n_columns - 1) exit ! the last row lacks its end
       read (line(:index(line//',', ',') - 1), *, iostat=status) row_time
       if (status /= 0 .or. row_time > time) exit
       write (new, '(a)') line
@@ -122,7 +126,7 @@ contains
     resumed = .true.
   end subroutine cut_back
 
-  !> A whole line of any length; status: not zero at the end of the file, an unfinished last line counting as such.
+  !> A whole line of any length; status: not zero at the end of the file.
   subroutine read_line(unit, line, status)
     integer, intent(in) :: unit
     character(:), allocatable, intent(out) :: line

@@ -7,7 +7,7 @@ module hdf5_files
   use hdf5
   use mpi_f08, only: MPI_INFO_NULL
   use errors, only: fatal
-  use parallel, only: is_root, world
+  use parallel, only: is_root, n_ranks, world
   implicit none
   private
   public :: hdf5_file, create_file, open_file, close_file, create_group, has_object, n_columns
@@ -20,8 +20,8 @@ module hdf5_files
     logical :: ok = .false. !< open, and nothing has failed yet
   end type hdf5_file
 
-  !> put_slab(file, path, values, offset, total [, width] [, one_byte]): my columns, one after the other in values(:), of a dataset of `total`
-  !> columns, `offset` of them before mine. The dataset is made at the first call; more calls may fill more of it.
+  !> put_slab(file, path, values, offset, total [, width] [, one_byte]): my columns, one after the other in values(:), of a
+  !> dataset of `total` columns, `offset` of them before mine. The dataset is made at the first call; more calls may fill more.
   interface put_slab
     module procedure put_real64, put_real32, put_int32, put_int64
   end interface put_slab
@@ -52,17 +52,21 @@ contains
     call h5pclose_f(access, error)
   end subroutine create_file
 
-  !> Opens a file for reading.
-  subroutine open_file(file, name)
+  !> Opens a file for reading. With missing_ok, a file that can't be opened is no error but leaves file%ok false.
+  subroutine open_file(file, name, missing_ok)
     type(hdf5_file), intent(out) :: file
     character(*), intent(in) :: name
+    logical, intent(in), optional :: missing_ok
+    logical :: forgive
     integer(hid_t) :: access
     integer :: error
     file%name = trim(name)
     access = parallel_access()
     call h5fopen_f(file%name, H5F_ACC_RDONLY_F, file%id, error, access_prp=access)
     file%ok = error >= 0
-    if (.not. file%ok) call fatal('can''t open "'//file%name//'": it is missing, unreadable or not a whole HDF5 file')
+    forgive = .false.
+    if (present(missing_ok)) forgive = missing_ok
+    if (.not. (file%ok .or. forgive)) call fatal('can''t open "'//file%name//'": it is missing, unreadable or not a whole file')
     call h5pclose_f(access, error)
   end subroutine open_file
 
@@ -269,7 +273,7 @@ contains
     integer(int64), intent(in) :: n_values, offset, total
     integer, intent(in), optional :: width
     logical, intent(in), optional :: one_byte
-    integer(hid_t) :: dataset, space, disk_type
+    integer(hid_t) :: dataset, space, disk_type, creation
     integer :: error
     if (.not. file%ok) return
     disk_type = memory_type
@@ -280,8 +284,12 @@ contains
       call open_dataset(file, path, dataset)
     else
       space = columns_space(total, width)
-      call h5dcreate_f(file%id, path, disk_type, space, dataset, error)
+      call h5pcreate_f(H5P_DATASET_CREATE_F, creation, error)
+      call h5pset_alloc_time_f(creation, H5D_ALLOC_TIME_EARLY_F, error) ! the same bytes from one rank as from many,
+      call h5pset_obj_track_times_f(creation, .false., error) ! and tomorrow as today
+      call h5dcreate_f(file%id, path, disk_type, space, dataset, error, creation)
       call check_hdf5(file, error, 'take dataset '//path)
+      call h5pclose_f(creation, error)
       call h5sclose_f(space, error)
     end if
     call transfer_columns(file, path, dataset, memory_type, address, n_values, offset, width, writing=.true.)
@@ -331,7 +339,7 @@ contains
       call h5sselect_none_f(memory_space, error)
     end if
     call h5pcreate_f(H5P_DATASET_XFER_F, collective, error)
-    call h5pset_dxpl_mpio_f(collective, H5FD_MPIO_COLLECTIVE_F, error)
+    if (n_ranks > 1) call h5pset_dxpl_mpio_f(collective, H5FD_MPIO_COLLECTIVE_F, error)
     call h5sget_simple_extent_npoints_f(file_space, all_values, error)
     if (status < 0) then
       call check_hdf5(file, status, 'give or take that part of dataset '//path)
@@ -384,7 +392,7 @@ contains
       library_is_open = .true.
     end if
     call h5pcreate_f(H5P_FILE_ACCESS_F, access, error)
-    call h5pset_fapl_mpio_f(access, world%MPI_VAL, MPI_INFO_NULL%MPI_VAL, error)
+    if (n_ranks > 1) call h5pset_fapl_mpio_f(access, world%MPI_VAL, MPI_INFO_NULL%MPI_VAL, error) ! else plain files
   end function parallel_access
 
   !> Fatal if the last call of the library failed; what: ends the sentence "file ... can't ...".

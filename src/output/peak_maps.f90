@@ -1,4 +1,4 @@
-!> What the blast did to each place: the highest overpressure ever, the impulse of the positive overpressure, and the time of arrival.
+!> What the blast did to each place: the highest overpressure, the impulse of the positive overpressure, the time of arrival.
 module peak_maps
   use blocks, only: block
   use kinds, only: wp
@@ -38,9 +38,9 @@ contains
     end do
   end subroutine start_peaks
 
-  !> Takes in the state at a time. state, open: blocks of the flow and of its closed cells (0 closed; unallocated where all are open);
-  !> column: of the pressure; duration: the time that this state stands for in the integral (the mean of the steps before and after
-  !> it gives the trapezoidal rule).
+  !> Takes in the state at a time. state, open: blocks of the flow and of its closed cells (0 closed; unallocated where
+  !> all are open); column: of the pressure; duration: the time that this state stands for in the integral
+  !> (the mean of the steps before and after it gives the trapezoidal rule).
   subroutine update_peaks(peaks, mesh, state, open, column, time, duration)
     type(peak_maps_type), intent(inout) :: peaks
     type(mesh_type), intent(in) :: mesh

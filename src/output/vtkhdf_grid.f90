@@ -58,30 +58,30 @@ contains
     call put_header(file%hdf5, content, clock, mesh)
   end subroutine create_grid_file
 
-  !> Writes one field. blocks: of the local bricks; columns: the variables that are its components (1 or 3);
-  !> summed: the field is the sum of the columns instead; absent: value in a brick whose block is not allocated (default 0).
-  subroutine put_cells(file, mesh, name, unit, blocks, columns, summed, absent)
+  !> Writes one field. blocks: of the local bricks; columns: the variables that are its components (1 or 3); remainder: the field is
+  !> instead what the columns together lack of 1; absent: value in a brick whose block is not allocated (default 0).
+  subroutine put_cells(file, mesh, name, unit, blocks, columns, remainder, absent)
     type(grid_file), intent(inout) :: file
     type(mesh_type), intent(in) :: mesh
     character(*), intent(in) :: name, unit
     type(block), intent(in) :: blocks(:)
     integer, intent(in) :: columns(:)
-    logical, intent(in), optional :: summed
+    logical, intent(in), optional :: remainder
     real(wp), intent(in), optional :: absent
     real(real32), allocatable :: values(:)
     integer :: b, width, per_brick
-    logical :: add_up
+    logical :: rest
     real(wp) :: missing
-    add_up = .false.
-    if (present(summed)) add_up = summed
+    rest = .false.
+    if (present(remainder)) rest = remainder
     missing = 0
     if (present(absent)) missing = absent
-    width = merge(1, size(columns), add_up)
+    width = merge(1, size(columns), rest)
     per_brick = width*product(mesh%brick_cells)
     allocate (values(per_brick*mesh%n_local))
     do b = 1, mesh%n_local
       if (allocated(blocks(b)%a)) then
-        call collect_cells(mesh%brick_cells, blocks(b), columns, add_up, values((b - 1)*per_brick + 1:b*per_brick))
+        call collect_cells(mesh%brick_cells, blocks(b), columns, rest, values((b - 1)*per_brick + 1:b*per_brick))
       else
         values((b - 1)*per_brick + 1:b*per_brick) = real(missing, real32)
       end if
@@ -91,24 +91,24 @@ contains
     else
       call put_slab(file%hdf5, level//'/CellData/'//name, values, file%offset, file%total, width)
     end if
-    call put_attribute(file%hdf5, level//'/CellData/'//name, 'unit', unit)
+    call put_attribute(file%hdf5, level//'/CellData/'//name, 'unit', trim(unit))
   end subroutine put_cells
 
   !> The cells of one block without its ghosts, components together, x fastest, in single precision.
-  pure subroutine collect_cells(n, b, columns, add_up, values)
+  pure subroutine collect_cells(n, b, columns, rest, values)
     integer, intent(in) :: n(3)
     type(block), intent(in) :: b
     integer, intent(in) :: columns(:)
-    logical, intent(in) :: add_up
+    logical, intent(in) :: rest
     real(real32), intent(out) :: values(:)
     integer :: i, j, k, c, place
     place = 0
     do k = 1, n(3)
       do j = 1, n(2)
         do i = 1, n(1)
-          if (add_up) then
+          if (rest) then
             place = place + 1
-            values(place) = single(sum([(b%a(i, columns(c), j, k), c=1, size(columns))]))
+            values(place) = single(1 - sum(b%a(i, columns, j, k)))
           else
             do c = 1, size(columns)
               place = place + 1

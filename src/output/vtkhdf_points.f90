@@ -1,5 +1,5 @@
 !> Particles as a VTKHDF file of type UnstructuredGrid, version 1.0, one vertex cell per particle. Real numbers are single precision
-!> on disk, but for the positions. Format: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
+!> on disk. Format: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
 module vtkhdf_points
   use, intrinsic :: iso_fortran_env, only: real32
   use file_system, only: publish_file
@@ -24,7 +24,7 @@ module vtkhdf_points
     integer(i8) :: total = 0 !< points of all ranks
   end type point_file
 
-  !> put_points(file, name, unit, values [, width]): one field, of all my points one after the other.
+  !> put_points(file, name, unit, values [, width | one_byte]): one field, of all my points one after the other.
   interface put_points
     module procedure put_real_points, put_integer_points
   end interface put_points
@@ -40,8 +40,9 @@ contains
     real(wp), intent(in) :: position(:)
     integer(i8) :: counts(n_ranks), offsets(1)
     integer, allocatable :: identity(:)
-    real(wp), allocatable :: drawn(:)
+    real(real32), allocatable :: drawn(:)
     integer :: i, d, last
+    real(wp) :: thickness
     integer, parameter :: vertex = 1
     file%name = name
     file%mine = size(position)/3
@@ -60,9 +61,10 @@ contains
     call put_whole(file%hdf5, 'VTKHDF/NumberOfCells', offsets)
     call put_whole(file%hdf5, 'VTKHDF/NumberOfConnectivityIds', offsets)
     allocate (drawn(size(position)))
-    drawn(:) = position
     do d = 1, 3
-      if (.not. mesh%active(d)) drawn(d::3) = drawn(d::3)*minval(thin_spacing(mesh))
+      thickness = 1
+      if (.not. mesh%active(d)) thickness = minval(thin_spacing(mesh))
+      drawn(d::3) = single(thickness*position(d::3))
     end do
     call put_slab(file%hdf5, 'VTKHDF/Points', drawn, file%offset, file%total, 3)
     allocate (identity(file%mine + 1))
@@ -84,15 +86,16 @@ contains
     allocate (short(size(values)))
     short(:) = single(values)
     call put_slab(file%hdf5, 'VTKHDF/PointData/'//name, short, file%offset, file%total, width)
-    call put_attribute(file%hdf5, 'VTKHDF/PointData/'//name, 'unit', unit)
+    call put_attribute(file%hdf5, 'VTKHDF/PointData/'//name, 'unit', trim(unit))
   end subroutine put_real_points
 
-  subroutine put_integer_points(file, name, unit, values)
+  subroutine put_integer_points(file, name, unit, values, one_byte)
     type(point_file), intent(inout) :: file
     character(*), intent(in) :: name, unit
     integer, intent(in), contiguous :: values(:)
-    call put_slab(file%hdf5, 'VTKHDF/PointData/'//name, values, file%offset, file%total)
-    call put_attribute(file%hdf5, 'VTKHDF/PointData/'//name, 'unit', unit)
+    logical, intent(in), optional :: one_byte !< all are 0 to 255
+    call put_slab(file%hdf5, 'VTKHDF/PointData/'//name, values, file%offset, file%total, one_byte=one_byte)
+    call put_attribute(file%hdf5, 'VTKHDF/PointData/'//name, 'unit', trim(unit))
   end subroutine put_integer_points
 
   !> Finishes the file and gives it its name.

@@ -93,7 +93,8 @@ contains
     block%moved_cell(n + 1) = cell
   end subroutine note_moved
 
-  !> Adds a particle that arrives in a cell; it takes its place in the next sort. All note_moved calls for resident particles come first.
+  !> Adds a particle that arrives in a cell; it takes its place in the next sort. All note_moved calls for resident particles
+  !> come first.
   subroutine append_particle(block, id, body, fields, cell)
     type(particle_block), intent(inout) :: block
     integer, intent(in) :: id, body, cell

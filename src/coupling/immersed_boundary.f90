@@ -1,0 +1,293 @@
+!> The immersed boundary between flow and solid: continuous forcing by a Lagrange multiplier, lg-CFIBM (paper section 3.2).
+!>
+!> In a step: immerse_solid finds the cell types and answers for gas that was covered or uncovered; wall velocities come from the
+!> nodes; then each Runge-Kutta stage is followed by force_stage; collect_force turns the impulse, that of the pressure on closed
+!> faces included, into the force that the solid step applies. The momentum that the fluid loses is what the solid gets, to
+!> round-off.
+!> Inside cells hold no flow and their faces are closed; their gas is booked out when they are covered, and a cell that becomes
+!> open again is built from its open neighbours and booked in.
+module immersed_boundary
+  use blocks, only: block, allocate_cells
+  use cell_types, only: classify_cells, mirror_ghosts, fluid_cell, interface_cell, inside_cell
+  use flow_state, only: flow_type
+  use halo, only: halo_type, fill
+  use interface_cells, only: interface_list, list_interface, wall_velocity, force_velocity, add_wall_impulse, &
+    spread_force
+  use kinds, only: wp
+  use mesh, only: mesh_type
+  use mixture, only: cell_energies, close_cell
+  use reductions, only: any_rank, reduce_sum
+  use solid_state, only: solid_type
+  implicit none
+  private
+  public :: start_coupling, restore_coupling, immerse_solid, find_wall_velocity, force_first_state, force_stage, collect_force
+
+  integer, parameter, public :: booked_impulse = 1 !< first of 3: momentum given to the solid
+  integer, parameter, public :: booked_reference = 4 !< first of 3: impulse of the reference pressure on closed faces
+  integer, parameter, public :: booked_kinetic = 7 !< kinetic energy taken from the fluid by forcing
+  integer, parameter, public :: booked_uncovered = 8 !< cells opened
+  integer, parameter, public :: booked_covered = 9 !< cells closed
+  integer, parameter, public :: booked_gas = 10 !< first of n_conserved: gas that uncovering added less what covering took away
+
+  !> Weights in the step of what is done to the state after each stage.
+  real(wp), parameter :: state_weight(3) = [1.0_wp/6, 2.0_wp/3, 1.0_wp]
+
+  !> State of the coupling.
+  type, public :: coupling_type
+    logical :: active = .false.
+    real(wp) :: reference_pressure = 0 !< pressure that the solid does not feel: its stress is counted from there
+    real(wp) :: face(3) = 1 !< area of cell faces by direction
+    type(block), allocatable :: occupancy(:) !< particles in each cell
+    type(block), allocatable :: kind(:), kind_before(:) !< cell types now and in the step before
+    type(interface_list), allocatable :: list(:) !< interface cells of each local brick
+    type(block), allocatable :: force(:) !< (3 variables) force on the solid by cell; unallocated where there is no interface
+    real(wp), allocatable :: partial(:, :) !< (booked_*, local brick) of this step
+    real(wp), allocatable :: books(:) !< (booked_*) since the start, all bricks
+    logical :: started = .false. !< cell types of an earlier step are known
+  end type coupling_type
+
+contains
+
+  !> Allocates the coupling of a scene that has both flow and solid.
+  subroutine start_coupling(coupling, mesh, flow, reference_pressure)
+    type(coupling_type), intent(out) :: coupling
+    type(mesh_type), intent(in) :: mesh
+    type(flow_type), intent(in) :: flow
+    real(wp), intent(in) :: reference_pressure
+    integer :: b, n_books
+    coupling%active = .true.
+    coupling%reference_pressure = reference_pressure
+    coupling%face = mesh%cell_volume/mesh%spacing
+    allocate (coupling%occupancy(mesh%n_local), coupling%kind(mesh%n_local), coupling%kind_before(mesh%n_local))
+    allocate (coupling%list(mesh%n_local), coupling%force(mesh%n_local))
+    do b = 1, mesh%n_local
+      call allocate_cells(coupling%occupancy(b), mesh%brick_cells, mesh%ghost, 1, 0.0_wp)
+      call allocate_cells(coupling%kind(b), mesh%brick_cells, mesh%ghost, 1, fluid_cell)
+      call allocate_cells(coupling%kind_before(b), mesh%brick_cells, mesh%ghost, 1, fluid_cell)
+    end do
+    n_books = booked_gas - 1 + flow%layout%n_conserved
+    allocate (coupling%partial(n_books, mesh%n_local), coupling%books(n_books), source=0.0_wp)
+  end subroutine start_coupling
+
+  !> Closes the inside cells again after a restart has brought back the cell types.
+  subroutine restore_coupling(mesh, flow, coupling)
+    type(mesh_type), intent(in) :: mesh
+    type(flow_type), intent(inout) :: flow
+    type(coupling_type), intent(inout) :: coupling
+    integer :: b
+    coupling%started = .true.
+    do b = 1, mesh%n_local
+      call close_inside(mesh, coupling%kind(b), flow%open(b), flow%wall_impulse(b))
+    end do
+  end subroutine restore_coupling
+
+  !> Finds the cell types from the particles, closes the cells inside, and lists the interface.
+  subroutine immerse_solid(mesh, halo, solid, flow, coupling)
+    type(mesh_type), intent(in) :: mesh
+    type(halo_type), intent(inout) :: halo
+    type(solid_type), intent(in) :: solid
+    type(flow_type), intent(inout) :: flow
+    type(coupling_type), intent(inout) :: coupling
+    integer :: b
+    logical :: opened
+    coupling%partial = 0
+    do b = 1, mesh%n_local
+      call copy_counts(mesh%brick_cells, solid%count(b), coupling%occupancy(b))
+      if (coupling%started) coupling%kind_before(b)%a = coupling%kind(b)%a
+    end do
+    call classify_cells(mesh, halo, coupling%occupancy, coupling%kind)
+    if (coupling%started) then
+      opened = .false.
+      do b = 1, mesh%n_local
+        opened = opened .or. any(coupling%kind_before(b)%a > interface_cell + 0.5_wp .and. &
+                                 coupling%kind(b)%a < inside_cell - 0.5_wp)
+      end do
+      if (any_rank(opened)) call fill(mesh, halo, flow%w(:, flow%current), flow%layout%n_rows, only_faces=.true.)
+      do b = 1, mesh%n_local
+        call answer_for_gas(mesh, flow, coupling, b)
+      end do
+    end if
+    coupling%started = .true.
+    do b = 1, mesh%n_local
+      call close_inside(mesh, coupling%kind(b), flow%open(b), flow%wall_impulse(b))
+      call list_interface(mesh%brick_cells, mesh%ghost, coupling%kind(b)%a(:, 1, :, :), interface_cell, inside_cell, &
+                          coupling%list(b))
+    end do
+  end subroutine immerse_solid
+
+  !> Particle counts of one brick in a block that has ghosts; a brick without particles has no counts.
+  subroutine copy_counts(n, counts, occupancy)
+    integer, intent(in) :: n(3)
+    type(block), intent(in) :: counts
+    type(block), intent(inout) :: occupancy
+    if (allocated(counts%a)) then
+      occupancy%a(1:n(1), 1, 1:n(2), 1:n(3)) = counts%a(1:n(1), 1, 1:n(2), 1:n(3))
+    else
+      occupancy%a = 0
+    end if
+  end subroutine copy_counts
+
+  !> flow%open of one brick: 0 in inside cells, 1 elsewhere; unallocated where no cell or ghost is inside. Walls start from nil.
+  subroutine close_inside(mesh, kind, open, wall_impulse)
+    type(mesh_type), intent(in) :: mesh
+    type(block), intent(in) :: kind
+    type(block), intent(inout) :: open, wall_impulse
+    if (any(kind%a > inside_cell - 0.5_wp)) then
+      if (.not. allocated(open%a)) then
+        call allocate_cells(open, mesh%brick_cells, mesh%ghost, 1, 1.0_wp)
+        call allocate_cells(wall_impulse, mesh%brick_cells, mesh%ghost, 3, 0.0_wp)
+      end if
+      open%a = merge(0.0_wp, 1.0_wp, kind%a > inside_cell - 0.5_wp)
+      wall_impulse%a = 0
+    else if (allocated(open%a)) then
+      deallocate (open%a, wall_impulse%a)
+    end if
+  end subroutine close_inside
+
+  !> Books out the gas of cells that became inside cells; cells that are open again get the mean state of their face neighbours
+  !> that were open before, and are booked in. Without such a neighbour the gas that was closed in comes out again.
+  subroutine answer_for_gas(mesh, flow, coupling, b)
+    type(mesh_type), intent(in) :: mesh
+    type(flow_type), intent(inout) :: flow
+    type(coupling_type), intent(inout) :: coupling
+    integer, intent(in) :: b
+    integer :: i, j, k
+    logical :: was_inside, is_inside
+    real(wp) :: cell(flow%layout%n_rows)
+    associate (w => flow%w(b, flow%current)%a, before => coupling%kind_before(b)%a, now => coupling%kind(b)%a, &
+               n => mesh%brick_cells)
+      do k = 1, n(3)
+        do j = 1, n(2)
+          do i = 1, n(1)
+            was_inside = before(i, 1, j, k) > interface_cell + 0.5_wp
+            is_inside = now(i, 1, j, k) > interface_cell + 0.5_wp
+            if (was_inside .eqv. is_inside) cycle
+            if (is_inside) then
+              call book_gas(i, j, k, -1.0_wp)
+              coupling%partial(booked_covered, b) = coupling%partial(booked_covered, b) + 1
+            else
+              call mean_of_neighbours(mesh%active, mesh%ghost, flow%layout%n_rows, i, j, k, before(:, 1, :, :), w)
+              cell = w(i, :, j, k)
+              call close_cell(flow%layout, flow%eos, cell)
+              w(i, :, j, k) = cell
+              call book_gas(i, j, k, 1.0_wp)
+              coupling%partial(booked_uncovered, b) = coupling%partial(booked_uncovered, b) + 1
+            end if
+          end do
+        end do
+      end do
+    end associate
+
+  contains
+
+    !> Masses, momentum and energy of a cell.
+    subroutine book_gas(i, j, k, sign)
+      integer, intent(in) :: i, j, k
+      real(wp), intent(in) :: sign
+      real(wp) :: content(flow%layout%n_conserved), v(3), density
+      associate (w => flow%w(b, flow%current)%a(i, :, j, k), layout => flow%layout)
+        density = sum(w(:layout%n_materials))
+        v = w(layout%velocity(1):layout%velocity(3))
+        content(:layout%n_materials) = w(:layout%n_materials)
+        content(layout%momentum_flux:layout%momentum_flux + 2) = density*v
+        content(layout%energy_flux) = sum(cell_energies(layout, flow%eos, w)) + 0.5_wp*density*sum(v**2)
+      end associate
+      coupling%partial(booked_gas:, b) = coupling%partial(booked_gas:, b) + sign*mesh%cell_volume*content
+    end subroutine book_gas
+
+  end subroutine answer_for_gas
+
+  !> Sets the state of a cell to the mean of those face neighbours that were open before.
+  subroutine mean_of_neighbours(active, ghost, n_rows, i, j, k, before, w)
+    logical, intent(in) :: active(3)
+    integer, intent(in) :: ghost(3), n_rows, i, j, k
+    real(wp), intent(in) :: before(1 - ghost(1):, 1 - ghost(2):, 1 - ghost(3):)
+    real(wp), intent(inout) :: w(1 - ghost(1):, :, 1 - ghost(2):, 1 - ghost(3):)
+    real(wp) :: mean(n_rows)
+    integer :: d, side, n, c(3)
+    mean = 0
+    n = 0
+    do d = 1, 3
+      if (.not. active(d)) cycle
+      do side = -1, 1, 2
+        c = [i, j, k]
+        c(d) = c(d) + side
+        if (before(c(1), c(2), c(3)) > interface_cell + 0.5_wp) cycle
+        mean = mean + w(c(1), :n_rows, c(2), c(3))
+        n = n + 1
+      end do
+    end do
+    if (n > 0) w(i, :n_rows, j, k) = mean/n
+  end subroutine mean_of_neighbours
+
+  !> Velocity of the solid in the interface cells, from the nodes.
+  subroutine find_wall_velocity(mesh, solid, coupling)
+    type(mesh_type), intent(in) :: mesh
+    type(solid_type), intent(in) :: solid
+    type(coupling_type), intent(inout) :: coupling
+    integer :: b
+    do b = 1, mesh%n_local
+      if (coupling%list(b)%n == 0) cycle
+      call wall_velocity(solid%node(b)%a, coupling%list(b))
+    end do
+  end subroutine find_wall_velocity
+
+  !> Forces the state that the step starts from: the solid has moved since the last stage.
+  subroutine force_first_state(mesh, flow, coupling)
+    type(mesh_type), intent(in) :: mesh
+    type(flow_type), intent(inout) :: flow
+    type(coupling_type), intent(inout) :: coupling
+    call force_buffer(mesh, flow, coupling, flow%current, 1.0_wp)
+  end subroutine force_first_state
+
+  !> Forces the state that a stage has made.
+  subroutine force_stage(mesh, flow, coupling, stage)
+    type(mesh_type), intent(in) :: mesh
+    type(flow_type), intent(inout) :: flow
+    type(coupling_type), intent(inout) :: coupling
+    integer, intent(in) :: stage
+    call force_buffer(mesh, flow, coupling, flow%target(stage), state_weight(stage))
+  end subroutine force_stage
+
+  subroutine force_buffer(mesh, flow, coupling, buffer, weight)
+    type(mesh_type), intent(in) :: mesh
+    type(flow_type), intent(inout) :: flow
+    type(coupling_type), intent(inout) :: coupling
+    integer, intent(in) :: buffer
+    real(wp), intent(in) :: weight
+    integer :: b
+    do b = 1, mesh%n_local
+      if (coupling%list(b)%n == 0) cycle
+      call force_velocity(flow%layout%n_materials, flow%layout%velocity(1), mesh%ghost, weight, mesh%cell_volume, &
+                          coupling%list(b), flow%w(b, buffer)%a, coupling%partial(booked_kinetic, b))
+    end do
+  end subroutine force_buffer
+
+  !> Turns the impulse of the step into the force that the solid feels in each cell, and brings the books up to date.
+  subroutine collect_force(mesh, flow, coupling, dt)
+    type(mesh_type), intent(in) :: mesh
+    type(flow_type), intent(in) :: flow
+    type(coupling_type), intent(inout) :: coupling
+    real(wp), intent(in) :: dt
+    real(wp) :: total(size(coupling%books))
+    integer :: b, d
+    do b = 1, mesh%n_local
+      if (coupling%list(b)%n == 0) then
+        if (allocated(coupling%force(b)%a)) deallocate (coupling%force(b)%a)
+        cycle
+      end if
+      if (allocated(flow%open(b)%a)) call add_wall_impulse(mesh%ghost, flow%wall_impulse(b)%a, &
+        dt*coupling%reference_pressure*coupling%face, coupling%list(b), &
+        coupling%partial(booked_reference:booked_reference + 2, b))
+      if (.not. allocated(coupling%force(b)%a)) call allocate_cells(coupling%force(b), mesh%brick_cells, [0, 0, 0], 3, 0.0_wp)
+      call spread_force(coupling%list(b), dt, coupling%force(b)%a)
+      do d = 1, 3
+        coupling%partial(booked_impulse + d - 1, b) = coupling%partial(booked_impulse + d - 1, b) &
+                                                      + sum(coupling%list(b)%impulse(d, :))
+      end do
+    end do
+    call reduce_sum(mesh, coupling%partial, total)
+    coupling%books = coupling%books + total
+  end subroutine collect_force
+
+end module immersed_boundary

@@ -1,0 +1,154 @@
+!> Checks of bodies, holes, reinforcement and clamps.
+module deck_check_solid
+  use kinds, only: wp
+  use constants, only: unset
+  use deck_check_flow, only: refer_to_material
+  use deck_check_material, only: check_name
+  use deck_check_shape, only: check_axis, check_point, check_shape, shape_type
+  use deck_keys, only: key_table
+  use deck_problems, only: problem_list, nearest_or_allowed
+  use deck_tables, only: find_table
+  use deck_types, only: deck_type, body_group, clamp_group, find_body, find_material, hole_group, &
+    reinforcement_group
+  use text, only: str
+  implicit none
+  private
+  public :: check_solid
+
+contains
+
+  !> Checks all groups that make the solid. Names of materials and bodies take the spelling of their definition.
+  subroutine check_solid(deck, tables, problems, warnings)
+    type(deck_type), intent(inout) :: deck
+    type(key_table), intent(in) :: tables(:)
+    type(problem_list), intent(inout) :: problems, warnings
+    integer :: i
+    do i = 1, size(deck%body)
+      call check_body(deck, deck%body(i), i, tables(find_table(tables, 'body', i)), problems, warnings)
+    end do
+    do i = 1, size(deck%hole)
+      call check_hole(deck, deck%hole(i), tables(find_table(tables, 'hole', i)), problems, warnings)
+    end do
+    do i = 1, size(deck%reinforcement)
+      call check_bars(deck, deck%reinforcement(i), tables(find_table(tables, 'reinforcement', i)), problems, warnings)
+    end do
+    do i = 1, size(deck%clamp)
+      call check_clamp(deck, deck%clamp(i), tables(find_table(tables, 'clamp', i)), problems)
+    end do
+  end subroutine check_solid
+
+  subroutine check_body(deck, body, i, table, problems, warnings)
+    type(deck_type), intent(in) :: deck
+    type(body_group), intent(inout) :: body
+    integer, intent(in) :: i !< number of the body
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems, warnings
+    type(shape_type) :: shape
+    integer :: first
+    call check_name(body%name, table, problems)
+    shape = shape_type(body%shape, body%lower, body%upper, body%center, body%radius, body%start, body%end)
+    call check_shape(shape, deck%mesh, table, problems, warnings)
+    body%lower = shape%lower
+    body%upper = shape%upper
+    body%center = shape%center
+    body%start = shape%start
+    body%end = shape%end
+    call refer_to_solid(deck, body%material, table, problems)
+    if (body%spacing > unset .and. all(deck%mesh%upper > unset)) then
+      if (any(deck%mesh%active() .and. deck%mesh%cell_size() < 0.999999_wp*body%spacing)) call warnings%add_at_key(table, &
+        'spacing', 'is more than the cell size: some cells inside the body will hold no particle')
+    end if
+    first = find_body(deck, body%name)
+    if (first == i .or. first == 0 .or. body%name == '') return
+    associate (other => deck%body(first))
+      body%name = other%name
+      if (find_material(deck, other%material) /= find_material(deck, body%material)) call problems%add_at_key(table, &
+        'material', 'body '''//trim(body%name)//''' is of '''//trim(other%material)//''' on line '//str(other%line)// &
+        '; parts of the same name are one body')
+      if (abs(other%spacing - body%spacing) > 0.0_wp) call problems%add_at_key(table, 'spacing', 'body '''// &
+        trim(body%name)//''' has another spacing on line '//str(other%line)//'; parts of the same name are one body')
+    end associate
+  end subroutine check_body
+
+  subroutine check_hole(deck, hole, table, problems, warnings)
+    type(deck_type), intent(in) :: deck
+    type(hole_group), intent(inout) :: hole
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems, warnings
+    type(shape_type) :: shape
+    shape = shape_type(hole%shape, hole%lower, hole%upper, hole%center, hole%radius, hole%start, hole%end)
+    call check_shape(shape, deck%mesh, table, problems, warnings)
+    hole%lower = shape%lower
+    hole%upper = shape%upper
+    hole%center = shape%center
+    hole%start = shape%start
+    hole%end = shape%end
+    call refer_to_body(deck, hole%body, table, problems)
+  end subroutine check_hole
+
+  subroutine check_bars(deck, bars, table, problems, warnings)
+    type(deck_type), intent(in) :: deck
+    type(reinforcement_group), intent(inout) :: bars
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems, warnings
+    real(wp) :: spacing
+    logical :: complete
+    integer :: i
+    complete = table%is_given('start') .and. table%is_given('end')
+    if (complete) call check_axis(bars%start, bars%end, deck%mesh, table, problems, complete)
+    call refer_to_body(deck, bars%body, table, problems)
+    call refer_to_solid(deck, bars%material, table, problems)
+    if (bars%count > 1 .and. .not. any(abs(bars%step) > 0.0_wp)) &
+      call problems%add_at_key(table, 'count', str(bars%count)//' bars need a step from one to the next')
+    i = find_body(deck, bars%body)
+    if (i == 0 .or. .not. bars%diameter > unset) return
+    spacing = bars%spacing
+    if (spacing <= 0.0_wp) spacing = deck%body(i)%spacing
+    if (bars%diameter < spacing) call warnings%add_at_key(table, 'diameter', &
+      'is less than the spacing of the particles: give these bars a finer spacing')
+  end subroutine check_bars
+
+  subroutine check_clamp(deck, clamp, table, problems)
+    type(deck_type), intent(in) :: deck
+    type(clamp_group), intent(inout) :: clamp
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems
+    logical :: complete
+    complete = table%is_given('lower') .and. table%is_given('upper')
+    if (complete) then
+      call check_point(clamp%lower, deck%mesh%lower, 'lower', deck%mesh, table, problems, complete)
+      call check_point(clamp%upper, deck%mesh%upper, 'upper', deck%mesh, table, problems, complete)
+    end if
+    if (complete .and. any(clamp%upper < clamp%lower)) call problems%add_at_key(table, 'upper', 'upper lies below lower')
+    if (clamp%body /= '') call refer_to_body(deck, clamp%body, table, problems)
+  end subroutine check_clamp
+
+  subroutine refer_to_solid(deck, name, table, problems)
+    type(deck_type), intent(in) :: deck
+    character(*), intent(inout) :: name
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems
+    integer :: i
+    call refer_to_material(deck, name, 'material', table, problems, i)
+    if (i == 0) return
+    if (deck%material(i)%model == '' .and. deck%material(i)%eos /= '') call problems%add_at_key(table, 'material', &
+      'material '''//trim(name)//''' has no model: it cannot be a solid (model = ''fluid'' makes particles of its eos)')
+  end subroutine refer_to_solid
+
+  subroutine refer_to_body(deck, name, table, problems)
+    type(deck_type), intent(in) :: deck
+    character(*), intent(inout) :: name
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems
+    integer :: i
+    if (name == '' .and. .not. table%is_given('body')) return
+    i = find_body(deck, name)
+    if (i > 0) then
+      name = deck%body(i)%name
+    else
+      call problems%add_at_key(table, 'body', 'no &body has the name '''//trim(name)//''''// &
+        nearest_or_allowed(name, deck%body%name, 'bodies'))
+    end if
+  end subroutine refer_to_body
+
+end module deck_check_solid

@@ -1,0 +1,104 @@
+!> The whole state of a run to a restart file and back, bit for bit, on any number of ranks.
+module checkpoint
+  use gauges, only: gauges_type, save_gauges, resume_gauges
+  use immersed_boundary, only: restore_coupling
+  use kinds, only: wp, i8
+  use mpi_f08, only: MPI_Allreduce, MPI_INTEGER8, MPI_SUM
+  use parallel, only: is_root, world
+  use peak_maps, only: peak_maps_type
+  use restart_fields, only: restart_put_blocks, restart_get_blocks, restart_put_table, restart_get_table
+  use restart_files, only: restart_file, create_restart, open_restart, close_restart
+  use restart_particles, only: restart_put_particles, restart_get_particles
+  use restart_values, only: restart_put, restart_get
+  use scene, only: scene_type
+  use solid_step, only: project_solid
+  implicit none
+  private
+  public :: save_run, resume_run
+
+contains
+
+  !> Writes the next restart file of the folder. first: mass, momentum, energy of the first balance.
+  subroutine save_run(scene, folder, gauges, peaks, first)
+    type(scene_type), intent(inout) :: scene
+    character(*), intent(in) :: folder
+    type(gauges_type), intent(inout) :: gauges
+    type(peak_maps_type), intent(in) :: peaks
+    real(wp), intent(in) :: first(:)
+    type(restart_file) :: file
+    integer :: b
+    integer(i8) :: repairs(size(scene%flow%repairs%count))
+    call create_restart(file, folder, scene%mesh, scene%clock%time, scene%clock%step)
+    call restart_put(file, 'flow_steps', scene%clock%n_flow_steps)
+    call restart_put(file, 'solid_steps', scene%clock%n_solid_steps)
+    call restart_put(file, 'first_balance', first)
+    associate (mesh => scene%mesh, one => [1, 1, 1])
+      if (scene%has_flow) then
+        call restart_put_blocks(file, 'flow', scene%flow%w(:, scene%flow%current), one, mesh%brick_cells)
+        call restart_put_table(file, 'flow_books', [(size(scene%flow%books(:, :, b)), b=1, mesh%n_local)], &
+                               reshape(scene%flow%books, [size(scene%flow%books)]))
+        call MPI_Allreduce(scene%flow%repairs%count, repairs, size(repairs), MPI_INTEGER8, MPI_SUM, world)
+        call restart_put(file, 'flow_repairs', repairs)
+      end if
+      if (scene%has_solid) then
+        call restart_put_particles(file, scene%solid%block)
+        call restart_put_table(file, 'solid_books', [(size(scene%solid%books, 1), b=1, mesh%n_local)], &
+                               reshape(scene%solid%books, [size(scene%solid%books)]))
+      end if
+      if (scene%coupled) then
+        call restart_put_blocks(file, 'cell_type', scene%coupling%kind, 1 - mesh%ghost, mesh%brick_cells + mesh%ghost)
+        call restart_put(file, 'coupling_books', scene%coupling%books)
+      end if
+      if (allocated(peaks%map)) call restart_put_blocks(file, 'peaks', peaks%map, one, mesh%brick_cells)
+    end associate
+    call save_gauges(gauges, file)
+    call close_restart(file)
+  end subroutine save_run
+
+  !> Takes up a run: scene and peaks have been made as for a new run and are overwritten. gauges: defined, not placed.
+  subroutine resume_run(scene, name, folder, gauges, peaks, first)
+    type(scene_type), intent(inout) :: scene
+    character(*), intent(in) :: name, folder
+    type(gauges_type), intent(inout) :: gauges
+    type(peak_maps_type), intent(inout) :: peaks
+    real(wp), intent(out) :: first(:)
+    type(restart_file) :: file
+    integer, allocatable :: counts(:)
+    real(wp), allocatable :: values(:)
+    allocate (counts(scene%mesh%n_local))
+    call open_restart(file, name, scene%mesh)
+    scene%clock%time = file%time
+    scene%clock%step = file%step
+    call restart_get(file, 'flow_steps', scene%clock%n_flow_steps)
+    call restart_get(file, 'solid_steps', scene%clock%n_solid_steps)
+    call restart_get(file, 'first_balance', first)
+    associate (mesh => scene%mesh, one => [1, 1, 1])
+      if (scene%has_flow) then
+        call restart_get_blocks(file, 'flow', scene%flow%w(:, scene%flow%current), one, mesh%brick_cells)
+        call restart_get_table(file, 'flow_books', counts, values)
+        scene%flow%books = reshape(values, shape(scene%flow%books))
+        call restart_get(file, 'flow_repairs', scene%flow%repairs%count)
+        if (.not. is_root()) scene%flow%repairs%count = 0
+      end if
+      if (scene%has_solid) then
+        call restart_get_particles(file, mesh, scene%solid%block)
+        call restart_get_table(file, 'solid_books', counts, values)
+        scene%solid%books = reshape(values, shape(scene%solid%books))
+        call project_solid(mesh, scene%halo, scene%solid)
+      end if
+      if (scene%coupled) then
+        call restart_get_blocks(file, 'cell_type', scene%coupling%kind, 1 - mesh%ghost, mesh%brick_cells + mesh%ghost)
+        call restart_get(file, 'coupling_books', scene%coupling%books)
+        call restore_coupling(mesh, scene%flow, scene%coupling)
+      end if
+      if (allocated(peaks%map)) call restart_get_blocks(file, 'peaks', peaks%map, one, mesh%brick_cells)
+    end associate
+    if (scene%has_solid) then
+      call resume_gauges(gauges, scene%mesh, folder, file, scene%solid)
+    else
+      call resume_gauges(gauges, scene%mesh, folder, file)
+    end if
+    call close_restart(file)
+  end subroutine resume_run
+
+end module checkpoint

@@ -1,0 +1,112 @@
+!> history.csv: masses, momenta and energies of the scene over time, and what keeps them in balance.
+module history
+  use balance, only: balance_type
+  use csv_series, only: series, open_series, put_row
+  use kinds, only: wp
+  use scene, only: scene_type
+  use solid_state, only: book_lost_mass, book_lost_count
+  use units, only: unit_labels_type
+  implicit none
+  private
+  public :: open_history, put_history
+
+  integer, parameter :: column_length = 96
+
+contains
+
+  !> Opens the table; resume_time: go on after a restart.
+  subroutine open_history(table, file, scene, labels, resume_time)
+    type(series), intent(out) :: table
+    character(*), intent(in) :: file
+    type(scene_type), intent(in) :: scene
+    type(unit_labels_type), intent(in) :: labels
+    real(wp), intent(in), optional :: resume_time
+    character(column_length), allocatable :: column(:)
+    integer :: k
+    allocate (column(0))
+    call add('time', labels%time)
+    call add('dt', labels%time)
+    call add('flow steps', '-')
+    call add('solid steps', '-')
+    if (scene%has_flow) then
+      do k = 1, scene%flow%n_materials
+        call add('flow.mass.'//trim(scene%flow%name(k)), labels%mass)
+      end do
+      do k = 1, scene%flow%n_materials
+        call add('flow.internal_energy.'//trim(scene%flow%name(k)), labels%energy)
+      end do
+      call add('flow.kinetic_energy', labels%energy)
+      call add_vector('flow.momentum', labels%momentum)
+      call add('flow.energy_through_boundary', labels%energy)
+    end if
+    if (scene%has_solid) then
+      do k = 1, scene%solid%n_sets
+        call add('solid.mass.'//trim(scene%solid%material(k)%name), labels%mass)
+        call add('solid.internal_energy.'//trim(scene%solid%material(k)%name), labels%energy)
+        call add('solid.kinetic_energy.'//trim(scene%solid%material(k)%name), labels%energy)
+        call add('solid.plastic_work.'//trim(scene%solid%material(k)%name), labels%energy)
+        call add('solid.failed_mass.'//trim(scene%solid%material(k)%name), labels%mass)
+      end do
+      call add_vector('solid.momentum', labels%momentum)
+      call add_vector('solid.impulse_of_supports', labels%momentum)
+      call add('solid.mass_that_left', labels%mass)
+      call add('solid.particles_that_left', '-')
+    end if
+    if (scene%coupled) then
+      call add_vector('coupling.impulse_on_solid', labels%momentum)
+      call add('coupling.work_on_solid', labels%energy)
+      call add('coupling.energy_taken_from_flow', labels%energy)
+      call add('coupling.mass_uncovered', labels%mass)
+      call add('coupling.energy_uncovered', labels%energy)
+    end if
+    call add('balance.mass', labels%mass)
+    call add_vector('balance.momentum', labels%momentum)
+    call add('balance.energy', labels%energy)
+    call open_series(table, file, column, resume_time)
+
+  contains
+
+    subroutine add(name, unit)
+      character(*), intent(in) :: name, unit
+      character(column_length) :: heading
+      heading = name//' ['//trim(unit)//']'
+      column = [column, heading]
+    end subroutine add
+
+    subroutine add_vector(name, unit)
+      character(*), intent(in) :: name, unit
+      integer :: d
+      do d = 1, 3
+        if (scene%mesh%active(d)) call add(name//'_'//'xyz'(d:d), unit)
+      end do
+    end subroutine add_vector
+
+  end subroutine open_history
+
+  !> Adds the row of the present time, in the order of the columns above.
+  subroutine put_history(table, scene, balance)
+    type(series), intent(inout) :: table
+    type(scene_type), intent(in) :: scene
+    type(balance_type), intent(in) :: balance
+    real(wp), allocatable :: row(:)
+    integer :: k
+    allocate (row(0))
+    row = [row, scene%clock%time, scene%clock%dt, real(scene%clock%flow_steps, wp), real(scene%clock%solid_steps, wp)]
+    if (scene%has_flow) row = [row, balance%flow%mass, balance%flow%internal, balance%flow%kinetic, &
+                               pack(balance%flow%momentum, scene%mesh%active), balance%boundary_energy]
+    if (scene%has_solid) then
+      associate (solid => balance%solid)
+        do k = 1, scene%solid%n_sets
+          row = [row, solid%mass(k), solid%internal(k), solid%kinetic(k), solid%plastic_work(k), solid%failed_mass(k)]
+        end do
+        row = [row, pack(sum(solid%momentum, dim=2), scene%mesh%active), pack(balance%support_impulse, scene%mesh%active), &
+               solid%books(book_lost_mass), solid%books(book_lost_count)]
+      end associate
+    end if
+    if (scene%coupled) row = [row, pack(balance%exchanged, scene%mesh%active), balance%work_on_solid, balance%taken_from_flow, &
+                              balance%uncovered_mass, balance%uncovered_energy]
+    row = [row, balance%mass, pack(balance%momentum, scene%mesh%active), balance%energy]
+    call put_row(table, row)
+  end subroutine put_history
+
+end module history

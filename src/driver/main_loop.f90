@@ -1,0 +1,86 @@
+!> The method, step by step: reading this from top to bottom tells what a step does.
+module main_loop
+  use flow_step, only: advance_stage, accept_step
+  use immersed_boundary, only: immerse_solid, find_wall_velocity, force_first_state, force_stage, collect_force
+  use kinds, only: wp
+  use records, only: records_type, record_step, stop_if_asked
+  use scene, only: scene_type
+  use solid_step, only: advance_solid
+  use time_step, only: choose_time_step, flow_part
+  implicit none
+  private
+  public :: run_scene
+
+contains
+
+  !> Advances the scene to its end, or until it is told to stop; status: exit status of the program.
+  subroutine run_scene(scene, records, status)
+    type(scene_type), intent(inout) :: scene
+    type(records_type), intent(inout) :: records
+    integer, intent(out) :: status
+    logical :: finished
+    call stop_if_asked(scene, records, finished, status)
+    do while (.not. finished)
+      call choose_time_step(scene, records%next_snapshot)
+      if (scene%coupled) call meet_solid(scene)
+      if (scene%has_flow) call advance_flow(scene)
+      if (scene%has_solid) call advance_structure(scene)
+      scene%clock%time = scene%clock%time + scene%clock%dt
+      scene%clock%step = scene%clock%step + 1
+      call record_step(scene, records)
+      call stop_if_asked(scene, records, finished, status)
+    end do
+  end subroutine run_scene
+
+  !> Cell types from the particles, answers for covered and uncovered gas, velocity of the solid where it meets the flow.
+  subroutine meet_solid(scene)
+    type(scene_type), intent(inout) :: scene
+    call scene%watch%start('coupling')
+    call immerse_solid(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
+    call find_wall_velocity(scene%mesh, scene%solid, scene%coupling)
+    call scene%watch%stop('coupling')
+  end subroutine meet_solid
+
+  !> The flow over the step, in parts if its own limit asks for them; each part in three stages of SSP Runge-Kutta, the velocity of
+  !> the solid imposed after each. What this takes from the flow becomes the force on the solid.
+  subroutine advance_flow(scene)
+    type(scene_type), intent(inout) :: scene
+    real(wp) :: left, dt
+    integer :: stage
+    left = scene%clock%dt
+    scene%clock%flow_steps = 0
+    do while (left > 0)
+      call flow_part(scene, left, dt)
+      if (scene%coupled) call force_first_state(scene%mesh, scene%flow, scene%coupling)
+      do stage = 1, 3
+        call scene%watch%start('flow')
+        call advance_stage(scene%mesh, scene%halo, scene%flow, stage, dt)
+        call scene%watch%stop('flow')
+        if (scene%coupled) call force_stage(scene%mesh, scene%flow, scene%coupling, stage)
+      end do
+      call accept_step(scene%flow)
+      scene%clock%flow_steps = scene%clock%flow_steps + 1
+    end do
+    scene%clock%n_flow_steps = scene%clock%n_flow_steps + scene%clock%flow_steps
+    if (scene%coupled) call collect_force(scene%mesh, scene%flow, scene%coupling, scene%clock%dt)
+  end subroutine advance_flow
+
+  !> The solid over the step, in equal parts under the same force.
+  subroutine advance_structure(scene)
+    type(scene_type), intent(inout) :: scene
+    integer :: part
+    real(wp) :: dt
+    call scene%watch%start('solid')
+    dt = scene%clock%dt/scene%clock%solid_steps
+    do part = 1, scene%clock%solid_steps
+      if (scene%coupled) then
+        call advance_solid(scene%mesh, scene%halo, scene%solid, dt, scene%coupling%force)
+      else
+        call advance_solid(scene%mesh, scene%halo, scene%solid, dt)
+      end if
+    end do
+    scene%clock%n_solid_steps = scene%clock%n_solid_steps + scene%clock%solid_steps
+    call scene%watch%stop('solid')
+  end subroutine advance_structure
+
+end module main_loop

@@ -1,0 +1,38 @@
+!> All that a run holds: the deck, the mesh, the three solvers' states, the clock, and what is written.
+module scene
+  use deck_types, only: deck_type
+  use flow_state, only: flow_type
+  use halo, only: halo_type
+  use immersed_boundary, only: coupling_type
+  use kinds, only: wp
+  use mesh, only: mesh_type
+  use solid_state, only: solid_type
+  use timers, only: stopwatch
+  implicit none
+  private
+
+  !> Where the run stands and how large its next step is.
+  type, public :: clock_type
+    integer :: step = 0
+    real(wp) :: time = 0
+    real(wp) :: end_time = 0
+    real(wp) :: dt = 0 !< of the step under way
+    integer :: solid_steps = 1 !< steps of the solid in it
+    integer :: flow_steps = 1 !< steps of the flow in it, counted
+    character(:), allocatable :: limiter !< what sets dt, for people
+    integer :: n_flow_steps = 0, n_solid_steps = 0 !< since the start of the scene
+  end type clock_type
+
+  type, public :: scene_type
+    type(deck_type) :: deck
+    type(mesh_type) :: mesh
+    type(halo_type) :: halo
+    logical :: has_flow = .false., has_solid = .false., coupled = .false.
+    type(flow_type) :: flow
+    type(solid_type) :: solid
+    type(coupling_type) :: coupling
+    type(clock_type) :: clock
+    type(stopwatch) :: watch !< wall time by phase
+  end type scene_type
+
+end module scene

@@ -1,0 +1,83 @@
+!> From the deck to a scene that is ready to run.
+module setup
+  use deck, only: read_deck
+  use flow_initial, only: setup_flow
+  use halo, only: plan_halo
+  use immersed_boundary, only: start_coupling, immerse_solid
+  use kinds, only: wp
+  use log, only: say, be_quiet
+  use mesh, only: build_mesh, assign_ranks
+  use options, only: options_type
+  use particle_generation, only: piece_type
+  use plan, only: brick_weights
+  use scene, only: scene_type
+  use solid_setup, only: setup_solid
+  use solid_step, only: project_solid
+  use text, only: str, lowercase
+  use units, only: unit_labels, unit_labels_type
+  implicit none
+  private
+  public :: read_scene, make_scene
+
+  integer, parameter :: ghost_layers = 2 !< of second-order reconstruction
+
+contains
+
+  !> Reads and checks the deck, applies the options, and lays out the mesh. Nothing large is allocated and nothing is written.
+  subroutine read_scene(options, scene)
+    type(options_type), intent(in) :: options
+    type(scene_type), intent(out) :: scene
+    logical :: periodic(3)
+    integer :: d
+    if (options%quiet) call be_quiet()
+    call read_deck(options%deck, scene%deck, options%overrides)
+    associate (deck => scene%deck)
+      if (len(options%output) > 0) deck%output%directory = options%output
+      if (options%wall_limit > 0) deck%run%wall_limit = options%wall_limit
+      periodic = [(trim(deck%boundary%flow_face(d, 1)) == 'periodic', d=1, 3)]
+      call build_mesh(scene%mesh, deck%mesh%cells, deck%mesh%lower, deck%mesh%upper, deck%mesh%brick, periodic, ghost_layers)
+      call assign_ranks(scene%mesh, brick_weights(deck, scene%mesh))
+      scene%has_flow = deck%has_flow
+      scene%has_solid = deck%has_solid
+      scene%coupled = deck%has_flow .and. deck%has_solid .and. trim(lowercase(deck%coupling%method)) /= 'none'
+      scene%clock%end_time = min(deck%run%end_time, options%until)
+    end associate
+  end subroutine read_scene
+
+  !> Fills the mesh with gas and particles.
+  subroutine make_scene(scene)
+    type(scene_type), intent(inout) :: scene
+    type(piece_type), allocatable :: pieces(:)
+    real(wp) :: ambient
+    call plan_halo(scene%mesh, scene%halo)
+    if (scene%has_flow) call setup_flow(scene%mesh, scene%deck, scene%flow)
+    if (scene%has_solid) then
+      call setup_solid(scene%mesh, scene%deck, scene%solid, pieces)
+      call say_pieces(scene, pieces)
+      call project_solid(scene%mesh, scene%halo, scene%solid)
+    end if
+    if (scene%coupled) then
+      ambient = scene%deck%flow%ambient_pressure
+      call start_coupling(scene%coupling, scene%mesh, scene%flow, ambient)
+      call immerse_solid(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
+    end if
+  end subroutine make_scene
+
+  !> Tells what the bodies came to.
+  subroutine say_pieces(scene, pieces)
+    type(scene_type), intent(in) :: scene
+    type(piece_type), intent(in) :: pieces(:)
+    type(unit_labels_type) :: labels
+    integer :: i
+    labels = unit_labels(trim(scene%deck%run%units))
+    do i = 1, size(pieces)
+      associate (piece => pieces(i))
+        call say('body '//trim(piece%name)//': '//str(piece%count)//' particles of '// &
+                 trim(scene%solid%material(piece%set)%name)//', mass '// &
+                 str(piece%volume*scene%solid%material(piece%set)%density)//' '//trim(labels%mass)// &
+                 ', particle volume scaled by '//str(piece%scale))
+      end associate
+    end do
+  end subroutine say_pieces
+
+end module setup

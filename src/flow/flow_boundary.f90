@@ -1,0 +1,85 @@
+!> Ghost cells at the faces of the domain. Sweeps go direction by direction, so edges and corners are not needed.
+module flow_boundary
+  use flow_state, only: flow_type, face_symmetry, face_inflow
+  use kinds, only: wp
+  use mesh, only: mesh_type
+  implicit none
+  private
+  public :: fill_boundary
+
+contains
+
+  !> Fills the ghost cells outside the domain of local brick b in the given buffer.
+  !> Symmetry mirrors the state and turns the normal velocity: a slip wall. Outflow repeats the last cell.
+  subroutine fill_boundary(mesh, flow, b, buffer)
+    type(mesh_type), intent(in) :: mesh
+    type(flow_type), intent(inout) :: flow
+    integer, intent(in) :: b, buffer
+    integer :: d
+    associate (brick => mesh%brick(mesh%local(b)))
+      do d = 1, 3
+        if (.not. mesh%active(d)) cycle
+        if (brick%at_low(d)) call fill_face(flow%w(b, buffer)%a, d, 1, mesh%ghosts, -1)
+        if (brick%at_high(d)) call fill_face(flow%w(b, buffer)%a, d, mesh%brick_cells(d), mesh%ghosts, 1)
+      end do
+    end associate
+
+  contains
+
+    !> Ghost layers beyond cell `last` of direction d; outward: -1 at the low face, 1 at the high face.
+    subroutine fill_face(w, d, last, layers, outward)
+      real(wp), allocatable, intent(inout) :: w(:, :, :, :)
+      integer, intent(in) :: d, last, layers, outward
+      integer :: layer, kind, from
+      kind = flow%face(merge(1, 2, outward < 0), d)
+      do layer = 1, layers
+        select case (kind)
+        case (face_symmetry)
+          from = last - outward*(layer - 1)
+        case default
+          from = last
+        end select
+        call copy_layer(w, d, from, last + outward*layer)
+        if (kind == face_symmetry) call turn_velocity(w, d, last + outward*layer)
+        if (kind == face_inflow) call set_layer(w, d, last + outward*layer)
+      end do
+    end subroutine fill_face
+
+    subroutine copy_layer(w, d, from, to)
+      real(wp), allocatable, intent(inout) :: w(:, :, :, :)
+      integer, intent(in) :: d, from, to
+      select case (d)
+      case (1); w(to, :, :, :) = w(from, :, :, :)
+      case (2); w(:, :, to, :) = w(:, :, from, :)
+      case (3); w(:, :, :, to) = w(:, :, :, from)
+      end select
+    end subroutine copy_layer
+
+    subroutine turn_velocity(w, d, layer)
+      real(wp), allocatable, intent(inout) :: w(:, :, :, :)
+      integer, intent(in) :: d, layer
+      integer :: u
+      u = flow%layout%velocity(d)
+      select case (d)
+      case (1); w(layer, u, :, :) = -w(layer, u, :, :)
+      case (2); w(:, u, layer, :) = -w(:, u, layer, :)
+      case (3); w(:, u, :, layer) = -w(:, u, :, layer)
+      end select
+    end subroutine turn_velocity
+
+    subroutine set_layer(w, d, layer)
+      real(wp), allocatable, intent(inout) :: w(:, :, :, :)
+      integer, intent(in) :: d, layer
+      integer :: v
+      do v = 1, flow%layout%n_rows
+        select case (d)
+        case (1); w(layer, v, :, :) = flow%inflow(v)
+        case (2); w(:, v, layer, :) = flow%inflow(v)
+        case (3); w(:, v, :, layer) = flow%inflow(v)
+        end select
+      end do
+    end subroutine set_layer
+
+  end subroutine fill_boundary
+
+end module flow_boundary

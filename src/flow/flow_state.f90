@@ -1,0 +1,119 @@
+!> The flow of this rank: state of its bricks in three rotating buffers, materials, boundary conditions, books and repairs.
+module flow_state
+  use blocks, only: block, allocate_cells
+  use brick_stage, only: stage_scratch
+  use equation_of_state, only: eos_type
+  use flow_layout, only: layout_type, new_layout
+  use kinds, only: wp, i8
+  use mesh, only: mesh_type
+  use reconstruction, only: venkatakrishnan
+  implicit none
+  private
+  public :: allocate_flow, set_inflow
+
+  integer, parameter, public :: face_outflow = 1, face_symmetry = 2, face_inflow = 3, face_periodic = 4
+
+  !> Kinds of repair that are counted.
+  integer, parameter, public :: repair_negative_mass = 1, repair_clipped_fraction = 2, repair_relaxation = 3, &
+    repair_low_pressure = 4, n_repairs = 4
+  character(28), parameter, public :: repair_names(n_repairs) = [character(28) :: 'negative mass set to nil', &
+    'volume fraction clipped', 'relaxation by bisection', 'pressure lifted to its floor']
+
+  real(wp), parameter :: no_noise = 1e-200_wp !< eps**2 that does no more than keep 0/0 away
+
+  !> Counts of this rank. Only relaxation by bisection leaves the answer as it should be; the others change it.
+  type, public :: repair_log
+    integer(i8) :: count(n_repairs) = 0
+    real(wp) :: position(3, n_repairs) = 0 !< centre of the last cell repaired
+  end type repair_log
+
+  type, public :: flow_type
+    integer :: n_materials = 0
+    character(64), allocatable :: name(:) !< of the materials
+    type(eos_type), allocatable :: eos(:)
+    type(layout_type) :: layout
+    type(block), allocatable :: w(:, :) !< state: local brick, buffer 1..3
+    integer :: current = 1 !< buffer of the state at the start of the step
+    integer :: limiter = venkatakrishnan
+    real(wp), allocatable :: eps2(:) !< square of the limiter's eps for each reconstructed row, in the row's units
+    real(wp) :: cfl = 0.8_wp !< of the sum over directions
+    real(wp) :: trace_fraction = 1e-8_wp !< smallest volume fraction of a material
+    real(wp) :: floor_pressure = 1e-30_wp !< smallest distance from a gas's lowest pressure
+    real(wp) :: gravity(3) = 0
+    integer :: face(2, 3) = face_outflow !< condition at the low and high face of each direction
+    real(wp), allocatable :: inflow(:) !< rows of the state that enters
+    type(block), allocatable :: open(:) !< 1 flows, 0 closed; allocated only in bricks with closed cells; ghosts filled
+    type(block), allocatable :: wall_impulse(:) !< momentum (3) given to closed cells, in the open cell beside them; with open
+    real(wp), allocatable :: books(:, :, :) !< what entered: conserved quantity, face (x low, x high, ...), local brick
+    type(repair_log) :: repairs
+    type(stage_scratch) :: scratch
+  contains
+    procedure :: target => target_buffer
+    procedure :: lowest_pressure
+    procedure :: material_name
+  end type flow_type
+
+contains
+
+  !> Allocates the flow on this rank's bricks: all ones, to be filled. name, eos: of the materials.
+  subroutine allocate_flow(flow, mesh, name, eos)
+    type(flow_type), intent(inout) :: flow
+    type(mesh_type), intent(in) :: mesh
+    character(*), intent(in) :: name(:)
+    type(eos_type), intent(in) :: eos(:)
+    integer :: b, buffer
+    flow%n_materials = size(eos)
+    flow%name = name
+    flow%eos = eos
+    flow%layout = new_layout(eos)
+    allocate (flow%w(mesh%n_local, 3), flow%open(mesh%n_local), flow%wall_impulse(mesh%n_local))
+    allocate (flow%eps2(flow%layout%n_reconstructed), source=no_noise)
+    allocate (flow%books(flow%layout%n_conserved, 6, mesh%n_local), source=0.0_wp)
+    do buffer = 1, 3
+      do b = 1, mesh%n_local
+        call allocate_cells(flow%w(b, buffer), mesh%brick_cells, mesh%ghost, flow%layout%n_rows, 1.0_wp)
+      end do
+    end do
+    do b = 1, 3
+      if (mesh%periodic(b)) flow%face(:, b) = face_periodic
+    end do
+  end subroutine allocate_flow
+
+  !> Buffer that stage 1, 2 or 3 writes; stage 3's becomes the state.
+  pure integer function target_buffer(self, stage)
+    class(flow_type), intent(in) :: self
+    integer, intent(in) :: stage
+    target_buffer = 1 + mod(self%current + merge(1, 0, stage == 2), 3)
+  end function target_buffer
+
+  !> Pressures at or below this cannot be: every material is present everywhere, if only as a trace.
+  pure real(wp) function lowest_pressure(self)
+    class(flow_type), intent(in) :: self
+    integer :: k
+    lowest_pressure = -huge(1.0_wp)
+    do k = 1, self%n_materials
+      if (self%eos(k)%is_gas) then
+        lowest_pressure = max(lowest_pressure, -self%eos(k)%gas%p_infinity)
+      else
+        lowest_pressure = max(lowest_pressure, 0.0_wp)
+      end if
+    end do
+  end function lowest_pressure
+
+  !> Name of material k; empty for 0.
+  pure function material_name(self, k) result(name)
+    class(flow_type), intent(in) :: self
+    integer, intent(in) :: k
+    character(:), allocatable :: name
+    name = ''
+    if (k > 0) name = trim(self%name(k))
+  end function material_name
+
+  !> The state that enters at inflow faces. state: rows of one cell.
+  subroutine set_inflow(flow, state)
+    type(flow_type), intent(inout) :: flow
+    real(wp), intent(in) :: state(:)
+    flow%inflow = state
+  end subroutine set_inflow
+
+end module flow_state

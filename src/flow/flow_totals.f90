@@ -1,0 +1,98 @@
+!> Sums over the flow: masses, momentum and energies of the open cells, and what entered through the faces of the domain.
+module flow_totals
+  use flow_state, only: flow_type
+  use kinds, only: wp
+  use mesh, only: mesh_type
+  use reductions, only: reduce_sum
+  implicit none
+  private
+  public :: sum_flow
+
+  type, public :: flow_totals_type
+    real(wp), allocatable :: mass(:) !< by material
+    real(wp) :: momentum(3) = 0
+    real(wp), allocatable :: internal(:) !< by material
+    real(wp) :: kinetic = 0
+    real(wp), allocatable :: entered(:, :) !< conserved quantity, face (x low, x high, y low, ...) since the start
+  end type flow_totals_type
+
+contains
+
+  !> The sums over all ranks, brick by brick in global order: the same bits on any number of ranks.
+  function sum_flow(mesh, flow) result(totals)
+    type(mesh_type), intent(in) :: mesh
+    type(flow_type), intent(in) :: flow
+    type(flow_totals_type) :: totals
+    real(wp), allocatable :: partial(:, :), total(:), row(:, :)
+    integer :: n, b, ld, sums, q
+    n = flow%n_materials
+    sums = 2*n + 4
+    allocate (partial(sums + 6*flow%layout%n_conserved, mesh%n_local), total(sums + 6*flow%layout%n_conserved))
+    do b = 1, mesh%n_local
+      ld = size(flow%w(b, 1)%a, 1)
+      allocate (row(ld, sums))
+      call sum_brick(b, ld, row)
+      do q = 1, sums
+        partial(q, b) = mesh%cell_volume*sum(row(1:mesh%brick_cells(1), q))
+      end do
+      partial(sums + 1:, b) = reshape(flow%books(:, :, b), [6*flow%layout%n_conserved])
+      deallocate (row)
+    end do
+    call reduce_sum(mesh, partial, total)
+    totals%mass = total(:n)
+    totals%internal = total(n + 1:2*n)
+    totals%momentum = total(2*n + 1:2*n + 3)
+    totals%kinetic = total(2*n + 4)
+    totals%entered = reshape(total(sums + 1:), [flow%layout%n_conserved, 6])
+  contains
+    !> Adds all rows of cells of a brick, cell by cell along x: the sum along x comes last.
+    subroutine sum_brick(b, ld, row)
+      integer, intent(in) :: b, ld
+      real(wp), intent(inout) :: row(ld, sums)
+      real(wp) :: open(ld), last(ld), a(ld), offset
+      integer :: i, j, k, m, e, p, r, u, nx
+      p = flow%layout%pressure_row
+      r = flow%layout%density_row
+      u = flow%layout%velocity_row
+      nx = mesh%brick_cells(1)
+      row = 0
+      associate (w => flow%w(b, flow%current)%a)
+        do k = 1, mesh%brick_cells(3)
+          do j = 1, mesh%brick_cells(2)
+            open = 1
+            if (allocated(flow%open(b)%a)) open(:nx) = merge(1.0_wp, 0.0_wp, flow%open(b)%a(1:nx, 1, j, k) > 0)
+            last = 1
+            do m = 1, n
+              e = flow%layout%energy(m)
+              offset = 0
+              if (flow%eos(m)%is_gas) offset = flow%eos(m)%gas%energy_offset
+              a = last
+              if (m < n) a(:nx) = w(1:nx, flow%layout%fraction(m), j, k)
+              last = last - a
+              !$omp simd
+              do i = 1, nx
+                row(i, m) = row(i, m) + open(i)*w(i, m, j, k)
+                row(i, n + m) = row(i, n + m) + open(i)*offset*w(i, m, j, k)
+              end do
+              if (e > 0) then
+                row(:nx, n + m) = row(:nx, n + m) + open(:nx)*w(1:nx, e, j, k)
+              else
+                row(:nx, n + m) = row(:nx, n + m) + open(:nx)*a(:nx)*(w(1:nx, p, j, k)*flow%eos(m)%over_g &
+                  + flow%eos(m)%rest_energy)
+              end if
+            end do
+            !$omp simd
+            do i = 1, nx
+              row(i, 2*n + 1) = row(i, 2*n + 1) + open(i)*w(i, r, j, k)*w(i, u, j, k)
+              row(i, 2*n + 2) = row(i, 2*n + 2) + open(i)*w(i, r, j, k)*w(i, u + 1, j, k)
+              row(i, 2*n + 3) = row(i, 2*n + 3) + open(i)*w(i, r, j, k)*w(i, u + 2, j, k)
+              row(i, 2*n + 4) = row(i, 2*n + 4) + open(i)*0.5_wp*w(i, r, j, k) &
+                *(w(i, u, j, k)**2 + w(i, u + 1, j, k)**2 + w(i, u + 2, j, k)**2)
+            end do
+          end do
+        end do
+      end associate
+    end subroutine sum_brick
+  end function sum_flow
+
+end module flow_totals

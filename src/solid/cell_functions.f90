@@ -1,0 +1,68 @@
+!> The trilinear functions of one cell.
+!>
+!> Nodes of a cell are counted x fastest: 1 = (0,0,0), 2 = (1,0,0), 3 = (0,1,0) ... 8 = (1,1,1).
+!>
+!> Coordinates in a cell are kept `edge` away from its faces. A particle within that distance of a face is seen slightly
+!> inside, which bounds node masses from below: force/mass of a node that a particle barely touches stays finite, no node
+!> needs to be cut off, and what the particles get is what the nodes have, to round-off.
+module cell_functions
+  use kinds, only: wp
+  implicit none
+  private
+  public :: weights, trilinear
+
+  real(wp), parameter, public :: edge = 1e-4_wp !< smallest distance to a cell face that the functions see, in cells
+  integer, parameter, public :: chunk = 256 !< particles per call of constitutive kernels at most
+  integer, parameter, public :: piece = 64 !< particles of a cell treated at a time
+
+  !> Where the cells of a brick lie: cell coordinate of x = (x - lower)*inverse - offset - (i - 1).
+  type, public :: cell_frame
+    real(wp) :: lower(3) = 0 !< low corner of the domain
+    real(wp) :: inverse(3) = 1 !< 1/spacing
+    integer :: offset(3) = 0 !< cells of the domain before the brick
+    integer :: n(3) = 1 !< cells of the brick
+  end type cell_frame
+
+contains
+
+  !> The two linear functions of each direction for n particles of a cell: (:,1) of the low node, (:,2) of the high node.
+  pure subroutine weights(frame, n, cell, x, y, z, wx, wy, wz)
+    type(cell_frame), intent(in) :: frame
+    integer, intent(in) :: n, cell(3)
+    real(wp), intent(in) :: x(n), y(n), z(n)
+    real(wp), intent(out) :: wx(piece, 2), wy(piece, 2), wz(piece, 2)
+    call linear(n, x, frame%lower(1), frame%inverse(1), real(frame%offset(1) + cell(1) - 1, wp), wx)
+    call linear(n, y, frame%lower(2), frame%inverse(2), real(frame%offset(2) + cell(2) - 1, wp), wy)
+    call linear(n, z, frame%lower(3), frame%inverse(3), real(frame%offset(3) + cell(3) - 1, wp), wz)
+  end subroutine weights
+
+  pure subroutine linear(n, x, lower, inverse, origin, w)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: x(n), lower, inverse, origin
+    real(wp), intent(out) :: w(piece, 2)
+    integer :: q
+    !$omp simd
+    do q = 1, n
+      w(q, 2) = min(max((x(q) - lower)*inverse - origin, edge), 1 - edge)
+      w(q, 1) = 1 - w(q, 2)
+    end do
+  end subroutine linear
+
+  !> Coefficients 1, x, y, z, xy, xz, yz, xyz of the trilinear function that variable v of a node field has in cell (i, j, k).
+  pure function trilinear(n, n_var, a, v, i, j, k) result(c)
+    integer, intent(in) :: n(3), n_var, v, i, j, k
+    real(wp), intent(in) :: a(0:n(1), n_var, 0:n(2), 0:n(3))
+    real(wp) :: c(8), low, high
+    low = a(i - 1, v, j - 1, k)
+    high = a(i, v, j - 1, k)
+    c(1) = a(i - 1, v, j - 1, k - 1)
+    c(2) = a(i, v, j - 1, k - 1) - c(1)
+    c(3) = a(i - 1, v, j, k - 1) - c(1)
+    c(4) = low - c(1)
+    c(5) = (a(i, v, j, k - 1) - a(i - 1, v, j, k - 1)) - c(2)
+    c(6) = (high - low) - c(2)
+    c(7) = (a(i - 1, v, j, k) - low) - c(3)
+    c(8) = ((a(i, v, j, k) - a(i - 1, v, j, k)) - (high - low)) - c(5)
+  end function trilinear
+
+end module cell_functions

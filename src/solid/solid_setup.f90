@@ -1,0 +1,260 @@
+!> Makes the solid of a deck: materials, bodies with holes and reinforcement, supports.
+module solid_setup
+  use deck_types, only: deck_type, body_group, reinforcement_group, unset, find_material, find_body, word_length
+  use errors, only: fatal, exit_bad_input
+  use kinds, only: wp
+  use mesh, only: mesh_type
+  use particle_fluid, only: fluid_energy, fluid_rest_pressure
+  use particle_generation, only: piece_type, body_lattice, bar_lattice, generate_particles
+  use particles, only: allocate_particles
+  use solid_material, only: make_solid_material, model_fluid
+  use solid_shapes, only: shape_type, box_shape, sphere_shape, cylinder_shape
+  use solid_state, only: solid_type, n_books, face_free, face_symmetry, face_clamped, clamp_box, n_cells_of
+  use supports, only: find_supports
+  implicit none
+  private
+  public :: setup_solid, allocate_solid
+
+contains
+
+  !> Builds the solid; project_solid must follow. pieces: what was made of each shape, for the report.
+  !> Errors in the deck that only the mesh shows (a body that misses the domain) are fatal.
+  subroutine setup_solid(mesh, deck, solid, pieces)
+    type(mesh_type), intent(in) :: mesh
+    type(deck_type), intent(in) :: deck
+    type(solid_type), intent(out) :: solid
+    type(piece_type), allocatable, intent(out) :: pieces(:)
+    integer, allocatable :: used(:)
+    solid%present = size(deck%body) > 0
+    solid%cfl = deck%solid%cfl
+    solid%gravity = merge(deck%solid%gravity, 0.0_wp, mesh%active)
+    solid%flip = deck%solid%flip
+    call choose_materials(deck, solid, used)
+    call number_bodies(deck, solid)
+    call set_supports(mesh, deck, solid)
+    call allocate_solid(mesh, solid)
+    call make_pieces(mesh, deck, used, solid, pieces)
+    call generate_particles(mesh, solid, pieces)
+  end subroutine setup_solid
+
+  !> Empty particle blocks, books at zero, held nodes: all that follows from the mesh, the materials and the supports.
+  subroutine allocate_solid(mesh, solid)
+    type(mesh_type), intent(in) :: mesh
+    type(solid_type), intent(inout) :: solid
+    integer :: b, set
+    allocate (solid%block(solid%n_sets, mesh%n_local), solid%node(mesh%n_local), solid%force(mesh%n_local))
+    allocate (solid%mapped(mesh%n_local), solid%count(mesh%n_local), solid%support(mesh%n_local))
+    allocate (solid%limit(solid%n_sets, mesh%n_local))
+    allocate (solid%books(n_books, mesh%n_local), source=0.0_wp)
+    do b = 1, mesh%n_local
+      do set = 1, solid%n_sets
+        call allocate_particles(solid%block(set, b), n_cells_of(mesh), solid%material(set)%n_field)
+      end do
+    end do
+    call find_supports(mesh, solid)
+  end subroutine allocate_solid
+
+  !> One set per material that a body or a reinforcement names, in the order of their first use.
+  subroutine choose_materials(deck, solid, used)
+    type(deck_type), intent(in) :: deck
+    type(solid_type), intent(inout) :: solid
+    integer, allocatable, intent(out) :: used(:)
+    integer :: i, m
+    allocate (used(0))
+    do i = 1, size(deck%body)
+      m = find_material(deck, deck%body(i)%material)
+      if (m == 0) call fatal("body '"//trim(deck%body(i)%name)//"': no material '"//trim(deck%body(i)%material)//"'", &
+        exit_bad_input)
+      if (.not. any(used == m)) used = [used, m]
+    end do
+    do i = 1, size(deck%reinforcement)
+      m = find_material(deck, deck%reinforcement(i)%material)
+      if (m == 0) call fatal("reinforcement: no material '"//trim(deck%reinforcement(i)%material)//"'", exit_bad_input)
+      if (.not. any(used == m)) used = [used, m]
+    end do
+    solid%n_sets = size(used)
+    allocate (solid%material(size(used)))
+    do i = 1, size(used)
+      solid%material(i) = make_solid_material(deck%material(used(i)), deck%solid%bulk_viscosity)
+    end do
+  end subroutine choose_materials
+
+  !> Bodies are numbered by their names in the order of the deck.
+  subroutine number_bodies(deck, solid)
+    type(deck_type), intent(in) :: deck
+    type(solid_type), intent(inout) :: solid
+    integer :: i
+    allocate (solid%body_name(size(deck%body)))
+    do i = 1, size(deck%body)
+      if (find_body(deck, deck%body(i)%name) /= i) cycle
+      solid%n_bodies = solid%n_bodies + 1
+      solid%body_name(solid%n_bodies) = deck%body(i)%name
+    end do
+  end subroutine number_bodies
+
+  !> Number of the body of this name.
+  pure integer function body_number(deck, name) result(number)
+    type(deck_type), intent(in) :: deck
+    character(*), intent(in) :: name
+    integer :: i
+    number = 0
+    do i = 1, find_body(deck, name)
+      if (find_body(deck, deck%body(i)%name) == i) number = number + 1
+    end do
+  end function body_number
+
+  subroutine set_supports(mesh, deck, solid)
+    type(mesh_type), intent(in) :: mesh
+    type(deck_type), intent(in) :: deck
+    type(solid_type), intent(inout) :: solid
+    type(shape_type) :: shape
+    type(clamp_box) :: part
+    integer :: d, side, i, c
+    do d = 1, 3
+      do side = 1, 2
+        select case (deck%boundary%solid_face(d, side))
+        case ('symmetry')
+          solid%face(side, d) = face_symmetry
+        case ('clamped')
+          solid%face(side, d) = face_clamped
+        case default
+          solid%face(side, d) = face_free
+        end select
+      end do
+    end do
+    allocate (solid%clamp(0))
+    do c = 1, size(deck%clamp)
+      associate (clamp => deck%clamp(c))
+        part%lower = clamp%lower
+        part%upper = clamp%upper
+        part%fixed = [index(clamp%fixed, 'x') > 0, index(clamp%fixed, 'y') > 0, index(clamp%fixed, 'z') > 0]
+        if (clamp%body == '') then
+          solid%clamp = [solid%clamp, part]
+          cycle
+        end if
+        ! a clamp of one body holds the nodes around that body's shapes only
+        do i = 1, size(deck%body)
+          if (find_body(deck, deck%body(i)%name) /= find_body(deck, clamp%body)) cycle
+          shape = deck_shape(mesh, deck%body(i)%shape, deck%body(i)%lower, deck%body(i)%upper, deck%body(i)%center, &
+            deck%body(i)%radius, deck%body(i)%start, deck%body(i)%end)
+          solid%clamp = [solid%clamp, clamp_box(max(clamp%lower, shape%lower - mesh%spacing), &
+            min(clamp%upper, shape%upper + mesh%spacing), part%fixed)]
+        end do
+      end associate
+    end do
+  end subroutine set_supports
+
+  function deck_shape(mesh, kind, lower, upper, center, radius, start, end) result(shape)
+    type(mesh_type), intent(in) :: mesh
+    character(*), intent(in) :: kind
+    real(wp), intent(in) :: lower(3), upper(3), center(3), radius, start(3), end(3)
+    type(shape_type) :: shape
+    select case (kind)
+    case ('box')
+      shape = box_shape(lower, upper, mesh%active)
+    case ('sphere')
+      shape = sphere_shape(center, radius, mesh%active)
+    case ('cylinder')
+      shape = cylinder_shape(start, end, radius, mesh%active)
+    case default
+      call fatal("solid: no shape '"//trim(kind)//"'", exit_bad_input)
+    end select
+  end function deck_shape
+
+  !> Bodies in the order of the deck, then bars. A shape gives way to earlier shapes of its body, to the body's holes and bars;
+  !> a bar gives way to earlier bars.
+  subroutine make_pieces(mesh, deck, used, solid, pieces)
+    type(mesh_type), intent(in) :: mesh
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: used(:)
+    type(solid_type), intent(in) :: solid
+    type(piece_type), allocatable, intent(out) :: pieces(:)
+    type(shape_type), allocatable :: bar(:), cut(:), shape(:)
+    integer, allocatable :: owner(:), group(:)
+    integer :: i, j, n
+    call list_bars(mesh, deck, bar, owner, group)
+    allocate (shape(size(deck%body)), pieces(size(deck%body) + size(bar)))
+    do i = 1, size(deck%body)
+      associate (body => deck%body(i), piece => pieces(i))
+        shape(i) = deck_shape(mesh, body%shape, body%lower, body%upper, body%center, body%radius, body%start, body%end)
+        allocate (cut(0))
+        do j = 1, i - 1
+          if (find_body(deck, deck%body(j)%name) == find_body(deck, body%name)) cut = [cut, shape(j)]
+        end do
+        do j = 1, size(deck%hole)
+          if (find_body(deck, deck%hole(j)%body) /= find_body(deck, body%name)) cycle
+          cut = [cut, deck_shape(mesh, deck%hole(j)%shape, deck%hole(j)%lower, deck%hole(j)%upper, deck%hole(j)%center, &
+            deck%hole(j)%radius, deck%hole(j)%start, deck%hole(j)%end)]
+        end do
+        do j = 1, size(bar)
+          if (owner(j) == find_body(deck, body%name)) cut = [cut, bar(j)]
+        end do
+        piece%name = body%name
+        piece%shape = shape(i)
+        call move_alloc(cut, piece%cut)
+        piece%lattice = body_lattice(mesh, shape(i), body%spacing)
+        piece%set = findloc(used, find_material(deck, body%material), dim=1)
+        piece%body = body_number(deck, body%name)
+        piece%velocity = body%velocity
+      end associate
+    end do
+    n = size(deck%body)
+    do i = 1, size(bar)
+      associate (bars => deck%reinforcement(group(i)), body => deck%body(owner(i)), piece => pieces(n + i))
+        allocate (cut(0))
+        do j = 1, i - 1
+          if (owner(j) == owner(i)) cut = [cut, bar(j)]
+        end do
+        piece%name = trim(body%name)//' reinforcement'
+        piece%shape = bar(i)
+        call move_alloc(cut, piece%cut)
+        piece%lattice = bar_lattice(mesh, bar(i), merge(bars%spacing, body%spacing, bars%spacing > 0))
+        piece%set = findloc(used, find_material(deck, bars%material), dim=1)
+        piece%body = body_number(deck, body%name)
+        piece%velocity = body%velocity
+      end associate
+    end do
+    do i = 1, size(pieces)
+      call set_fluid_state(deck, solid, pieces(i))
+    end do
+  end subroutine make_pieces
+
+  !> All bars that touch the domain; owner: first body group of their body; group: their reinforcement group.
+  subroutine list_bars(mesh, deck, bar, owner, group)
+    type(mesh_type), intent(in) :: mesh
+    type(deck_type), intent(in) :: deck
+    type(shape_type), allocatable, intent(out) :: bar(:)
+    integer, allocatable, intent(out) :: owner(:), group(:)
+    type(shape_type) :: shape
+    integer :: i, j
+    allocate (bar(0), owner(0), group(0))
+    do i = 1, size(deck%reinforcement)
+      associate (bars => deck%reinforcement(i))
+        if (find_body(deck, bars%body) == 0) call fatal("reinforcement: no body '"//trim(bars%body)//"'", exit_bad_input)
+        do j = 0, bars%count - 1
+          shape = cylinder_shape(bars%start + j*bars%step, bars%end + j*bars%step, 0.5_wp*bars%diameter, mesh%active)
+          if (any(mesh%active .and. (shape%upper <= mesh%lower .or. shape%lower >= mesh%upper))) cycle
+          bar = [bar, shape]
+          owner = [owner, find_body(deck, bars%body)]
+          group = [group, i]
+        end do
+      end associate
+    end do
+  end subroutine list_bars
+
+  !> Fluids start at the energy of the explosive, or at the deck's ambient pressure.
+  subroutine set_fluid_state(deck, solid, piece)
+    type(deck_type), intent(in) :: deck
+    type(solid_type), intent(in) :: solid
+    type(piece_type), intent(inout) :: piece
+    real(wp) :: ambient
+    associate (m => solid%material(piece%set))
+      if (m%model /= model_fluid) return
+      ambient = 0
+      if (deck%flow%ambient_pressure > unset) ambient = deck%flow%ambient_pressure
+      piece%energy = fluid_energy(m%eos, m%density, ambient)
+      piece%pressure = fluid_rest_pressure(m%eos, m%density, piece%energy)
+    end associate
+  end subroutine set_fluid_state
+
+end module solid_setup

@@ -1,0 +1,129 @@
+!> The state of the solid on this rank: particles by set (material) and brick, node fields, supports, books.
+module solid_state
+  use blocks, only: block, allocate_nodes, allocate_cells
+  use kinds, only: wp
+  use mesh, only: mesh_type
+  use particles, only: particle_block
+  use solid_material, only: solid_material_type
+  use cell_functions, only: cell_frame
+  implicit none
+  private
+  public :: frame_of, n_cells_of, cell_coordinate, brick_particles, match_nodes
+
+  !> What a face of the domain does to the solid.
+  integer, parameter, public :: face_free = 0, face_symmetry = 1, face_clamped = 2
+
+  !> Impulses are booked by support: domain faces x low, x high, y low ... z high as 1..6, clamps as 7.
+  integer, parameter, public :: n_supports = 7
+  integer, parameter, public :: book_impulse = 1 !< first of 3*n_supports: impulse of each support on the solid
+  integer, parameter, public :: book_coupling_impulse = 22 !< first of 3: impulse of the coupling force
+  integer, parameter, public :: book_coupling_work = 25 !< work of the coupling force on the solid
+  integer, parameter, public :: book_lost_mass = 26 !< of particles that left the domain
+  integer, parameter, public :: book_lost_momentum = 27 !< first of 3
+  integer, parameter, public :: book_lost_kinetic = 30, book_lost_internal = 31
+  integer, parameter, public :: book_lost_count = 32
+  integer, parameter, public :: book_gravity_impulse = 33 !< first of 3
+  integer, parameter, public :: n_books = 35
+
+  !> A velocity component of a node that is held at zero.
+  type, public :: held_type
+    integer :: node(3) = 0 !< indices in the brick, from 0
+    integer :: direction = 0
+    integer :: support = 0 !< 1..n_supports
+  end type held_type
+
+  !> All that holds nodes of one brick.
+  type, public :: support_list
+    type(held_type), allocatable :: held(:)
+    real(wp) :: total_mass = 0 !< of the brick's particles
+    real(wp) :: mass(3, n_supports) = 0 !< this brick's part of the mass held, by component and support
+    real(wp) :: momentum(3, n_supports) = 0 !< likewise, momentum before it was held
+  end type support_list
+
+  !> A box in which nodes are clamped.
+  type, public :: clamp_box
+    real(wp) :: lower(3) = 0, upper(3) = 0
+    logical :: fixed(3) = .true.
+  end type clamp_box
+
+  !> The fastest signal of the particles: what limits the time step.
+  type, public :: limit_type
+    real(wp) :: signal = 0 !< c + |v|
+    integer :: index = 0 !< of the particle in its block
+  end type limit_type
+
+  type, public :: solid_type
+    logical :: present = .false. !< the scene has a solid
+    integer :: n_sets = 0
+    type(solid_material_type), allocatable :: material(:) !< of each set
+    integer :: n_bodies = 0
+    character(64), allocatable :: body_name(:)
+    integer :: n_particles = 0 !< in the scene at the start
+    type(particle_block), allocatable :: block(:, :) !< (set, local brick)
+    type(block), allocatable :: node(:) !< mass and velocity of the nodes (4), by local brick; unallocated without particles
+    type(block), allocatable :: force(:) !< force, later velocity change of the nodes (3)
+    type(block), allocatable :: mapped(:) !< velocity mapped back from the moved particles (3)
+    type(block), allocatable :: count(:) !< particles of all sets per cell (1, no ghosts)
+    type(support_list), allocatable :: support(:) !< by local brick
+    type(limit_type), allocatable :: limit(:, :) !< (set, local brick)
+    real(wp), allocatable :: books(:, :) !< (n_books, local brick), summed since the start
+    integer :: face(2, 3) = face_free !< what the low and high faces do
+    type(clamp_box), allocatable :: clamp(:)
+    real(wp) :: cfl = 0.5_wp
+    real(wp) :: gravity(3) = 0
+    real(wp) :: flip = 1 !< part of FLIP, the rest is PIC
+  end type solid_type
+
+contains
+
+  !> Where the cells of a local brick lie.
+  pure function frame_of(mesh, local) result(frame)
+    type(mesh_type), intent(in) :: mesh
+    integer, intent(in) :: local
+    type(cell_frame) :: frame
+    frame%lower = mesh%lower
+    frame%inverse = 1/mesh%spacing
+    frame%offset = mesh%brick(mesh%local(local))%location*mesh%brick_cells
+    frame%n = mesh%brick_cells
+  end function frame_of
+
+  pure integer function n_cells_of(mesh)
+    type(mesh_type), intent(in) :: mesh
+    n_cells_of = product(mesh%brick_cells)
+  end function n_cells_of
+
+  !> Coordinate of the cell that holds position x in direction d, from 0, not limited to the domain.
+  pure integer function cell_coordinate(mesh, d, x)
+    type(mesh_type), intent(in) :: mesh
+    integer, intent(in) :: d
+    real(wp), intent(in) :: x
+    cell_coordinate = floor((x - mesh%lower(d))*(1/mesh%spacing(d)))
+  end function cell_coordinate
+
+  !> Particles of all sets in a local brick.
+  pure integer function brick_particles(solid, local) result(n)
+    type(solid_type), intent(in) :: solid
+    integer, intent(in) :: local
+    n = sum(solid%block(:, local)%n)
+  end function brick_particles
+
+  !> Node and count arrays exist exactly where there are particles.
+  subroutine match_nodes(mesh, solid)
+    type(mesh_type), intent(in) :: mesh
+    type(solid_type), intent(inout) :: solid
+    integer, parameter :: no_ghosts(3) = 0
+    integer :: b
+    do b = 1, mesh%n_local
+      if (brick_particles(solid, b) > 0) then
+        if (allocated(solid%node(b)%a)) cycle
+        call allocate_nodes(solid%node(b), mesh%brick_cells, 4)
+        call allocate_nodes(solid%force(b), mesh%brick_cells, 3)
+        call allocate_nodes(solid%mapped(b), mesh%brick_cells, 3)
+        call allocate_cells(solid%count(b), mesh%brick_cells, no_ghosts, 1, 0.0_wp)
+      else if (allocated(solid%node(b)%a)) then
+        deallocate (solid%node(b)%a, solid%force(b)%a, solid%mapped(b)%a, solid%count(b)%a)
+      end if
+    end do
+  end subroutine match_nodes
+
+end module solid_state
