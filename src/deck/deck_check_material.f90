@@ -2,8 +2,8 @@
 module deck_check_material
   use kinds, only: wp
   use constants, only: unset
-  use deck_keys, only: key_table, kind_real, kind_text
-  use deck_material, only: material_group
+  use deck_keys, only: key_table, kind_real
+  use deck_material, only: material_group, material_keys
   use deck_problems, only: problem_list
   use text, only: join, str
   use units, only: from_si, to_si
@@ -177,7 +177,7 @@ contains
     laws = 'eos '''//trim(material%eos)//''''
     if (material%eos == '') laws = 'model '''//trim(material%model)//''''
     if (material%eos /= '' .and. material%model /= '') laws = laws//' and model '''//trim(material%model)//''''
-    call default_table(fresh, defaults)
+    call material_keys(fresh, defaults)
     do i = 1, table%n
       associate (key => table%key(i))
         if (key%kind /= kind_real .or. .not. any(key%given) .or. any(used == key%name)) cycle
@@ -187,13 +187,6 @@ contains
       end associate
     end do
   end subroutine warn_of_idle_constants
-
-  subroutine default_table(fresh, table)
-    use deck_material, only: material_keys
-    type(material_group), intent(inout), target :: fresh
-    type(key_table), intent(inout) :: table
-    call material_keys(fresh, table)
-  end subroutine default_table
 
   subroutine check_failure(material, table, problems)
     type(material_group), intent(in) :: material

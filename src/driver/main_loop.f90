@@ -9,7 +9,7 @@ module main_loop
   use time_step, only: choose_time_step, flow_part
   implicit none
   private
-  public :: run_scene
+  public :: run_scene, advance_scene
 
 contains
 
@@ -21,16 +21,23 @@ contains
     logical :: finished
     call stop_if_asked(scene, records, finished, status)
     do while (.not. finished)
-      call choose_time_step(scene, records%next_snapshot)
-      if (scene%coupled) call meet_solid(scene)
-      if (scene%has_flow) call advance_flow(scene)
-      if (scene%has_solid) call advance_structure(scene)
-      scene%clock%time = scene%clock%time + scene%clock%dt
-      scene%clock%step = scene%clock%step + 1
+      call advance_scene(scene, records%next_snapshot)
       call record_step(scene, records)
       call stop_if_asked(scene, records, finished, status)
     end do
   end subroutine run_scene
+
+  !> One step of the scene. next_event: time that a step shall end at.
+  subroutine advance_scene(scene, next_event)
+    type(scene_type), intent(inout) :: scene
+    real(wp), intent(in) :: next_event
+    call choose_time_step(scene, next_event)
+    if (scene%coupled) call meet_solid(scene)
+    if (scene%has_flow) call advance_flow(scene)
+    if (scene%has_solid) call advance_structure(scene)
+    scene%clock%time = scene%clock%time + scene%clock%dt
+    scene%clock%step = scene%clock%step + 1
+  end subroutine advance_scene
 
   !> Cell types from the particles, answers for covered and uncovered gas, velocity of the solid where it meets the flow.
   subroutine meet_solid(scene)

@@ -11,7 +11,7 @@ module plan
   use units, only: unit_labels, unit_labels_type
   implicit none
   private
-  public :: print_plan, brick_weights, planned_particles
+  public :: print_plan, brick_weights, even_axes
 
   ! Typical costs and sizes, for the estimates only.
   real(wp), parameter :: seconds_per_cell_step = 2.0e-7_wp, seconds_per_particle_step = 1.2e-7_wp
@@ -58,6 +58,31 @@ contains
     if (deck%has_flow) weight = weight + product(mesh%brick_cells)*seconds_per_cell_step
     weight = weight + 1.0e-3_wp*product(mesh%brick_cells)*seconds_per_cell_step
   end function brick_weights
+
+  !> Directions in the order in which cutting the domain in halves shares out the particles: the evenest last, which the curve of the
+  !> bricks cuts first. Flow and solid take turns in a step, so each rank needs its part of both.
+  function even_axes(deck, mesh) result(order)
+    type(deck_type), intent(in) :: deck
+    type(mesh_type), intent(in) :: mesh
+    integer :: order(3)
+    real(wp), allocatable :: count(:)
+    real(wp) :: uneven(3)
+    integer :: b, d
+    count = planned_particles(deck, mesh)
+    uneven = 0
+    do d = 1, 3
+      do b = 1, size(mesh%brick)
+        uneven(d) = uneven(d) + count(b)*sign(1.0_wp, mesh%brick(b)%location(d) + 0.5_wp - 0.5_wp*mesh%bricks(d))
+      end do
+    end do
+    uneven = merge(abs(uneven), huge(1.0_wp), mesh%active)
+    order = [1, 2, 3]
+    do d = 1, 2 ! insertion sort of three
+      do b = 3, d + 1, -1
+        if (uneven(order(b)) > uneven(order(b - 1))) order(b - 1:b) = order([b, b - 1])
+      end do
+    end do
+  end function even_axes
 
   !> Particles that each brick will hold, from the boxes around the bodies.
   function planned_particles(deck, mesh) result(count)

@@ -9,7 +9,7 @@ module setup
   use mesh, only: build_mesh, assign_ranks
   use options, only: options_type
   use particle_generation, only: piece_type
-  use plan, only: brick_weights
+  use plan, only: brick_weights, even_axes
   use scene, only: scene_type
   use solid_setup, only: setup_solid
   use solid_step, only: project_solid
@@ -17,7 +17,7 @@ module setup
   use units, only: unit_labels, unit_labels_type
   implicit none
   private
-  public :: read_scene, make_scene
+  public :: read_scene, lay_out_scene, make_scene
 
   integer, parameter :: ghost_layers = 2 !< of second-order reconstruction
 
@@ -27,22 +27,31 @@ contains
   subroutine read_scene(options, scene)
     type(options_type), intent(in) :: options
     type(scene_type), intent(out) :: scene
-    logical :: periodic(3)
-    integer :: d
     if (options%quiet) call be_quiet()
     call read_deck(options%deck, scene%deck, options%overrides)
+    if (len(options%output) > 0) scene%deck%output%directory = options%output
+    if (options%wall_limit > 0) scene%deck%run%wall_limit = options%wall_limit
+    call lay_out_scene(scene)
+    scene%clock%end_time = min(scene%clock%end_time, options%until)
+  end subroutine read_scene
+
+  !> Which solvers the deck asks for, the mesh, and each rank's part of it.
+  subroutine lay_out_scene(scene)
+    type(scene_type), intent(inout) :: scene
+    logical :: periodic(3)
+    integer :: d
     associate (deck => scene%deck)
-      if (len(options%output) > 0) deck%output%directory = options%output
-      if (options%wall_limit > 0) deck%run%wall_limit = options%wall_limit
       periodic = [(trim(deck%boundary%flow_face(d, 1)) == 'periodic', d=1, 3)]
       call build_mesh(scene%mesh, deck%mesh%cells, deck%mesh%lower, deck%mesh%upper, deck%mesh%brick, periodic, ghost_layers)
+      if (deck%has_solid) call build_mesh(scene%mesh, deck%mesh%cells, deck%mesh%lower, deck%mesh%upper, deck%mesh%brick, &
+                                          periodic, ghost_layers, even_axes(deck, scene%mesh))
       call assign_ranks(scene%mesh, brick_weights(deck, scene%mesh))
       scene%has_flow = deck%has_flow
       scene%has_solid = deck%has_solid
       scene%coupled = deck%has_flow .and. deck%has_solid .and. trim(lowercase(deck%coupling%method)) /= 'none'
-      scene%clock%end_time = min(deck%run%end_time, options%until)
+      scene%clock%end_time = deck%run%end_time
     end associate
-  end subroutine read_scene
+  end subroutine lay_out_scene
 
   !> Fills the mesh with gas and particles.
   subroutine make_scene(scene)

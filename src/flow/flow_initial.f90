@@ -209,6 +209,7 @@ contains
       else if (norm2(merge(axis, 0.0_wp, active)) < 0.5_wp) then
         diameter = merge(sqrt(4*volume/pi), volume, n == 2) ! the axis is across the mesh: a disc
       else
+        axis = merge(axis, 0.0_wp, active)/norm2(merge(axis, 0.0_wp, active)) ! the axis lies in the mesh: a rectangle
         diameter = merge(sqrt(volume/charge%length_to_diameter), volume, n == 2)
         length = merge(charge%length_to_diameter*diameter, volume, n == 2)
       end if

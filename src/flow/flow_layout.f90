@@ -1,8 +1,8 @@
 !> Where each variable of the flow stands: rows of the state (primitive variables) and of the fluxes (conserved variables and
 !> what the two equations that are not conserved need).
 !> One material:  density, velocity, pressure, [energy], c.
-!> N materials:   partial densities a_k r_k, velocity, pressure, fractions a_1..a_(N-1) (the last is 1 - their sum),
-!>                energies, density of the mixture, c.
+!> Two materials: partial densities a_k r_k, velocity, pressure, fraction a_1, [energies], density of the mixture, c.
+!> More:          the same with the fractions of all.
 !> The energies (per volume of the cell) are stored only of materials whose energy is not a linear function of the pressure with
 !> constant coefficients, that is of all but gases: that spares their exponentials on the faces.
 module flow_layout
@@ -20,6 +20,7 @@ module flow_layout
     integer :: velocity_row = 2 !< of x; y and z follow
     integer :: pressure_row = 5
     integer :: first_fraction_row = 0 !< 0 with one material
+    integer :: n_fractions = 0 !< fractions stored: the second of two is 1 - the first
     integer :: energy_row(max_materials) = 0 !< 0 where the energy is not stored
     integer :: density_row = 1 !< of the mixture
     integer :: sound_speed_row = 6
@@ -27,14 +28,14 @@ module flow_layout
     integer :: n_conserved = 5 !< fluxes 1..this are of conserved quantities: masses, momentum, total energy
     integer :: momentum_flux = 2 !< of x; y and z follow
     integer :: energy_flux = 5
-    integer :: first_fraction_flux = 0 !< N-1 of them
+    integer :: first_fraction_flux = 0 !< n_fractions of them
     integer :: first_material_energy_flux = 0 !< N of them
     integer :: face_velocity_flux = 0
   contains
     procedure :: partial_density => row_of_partial_density !< row of a_k r_k (the density itself with one material)
     procedure :: velocity => row_of_velocity !< row of the velocity in direction 1, 2 or 3
     procedure :: pressure => row_of_pressure
-    procedure :: fraction => row_of_fraction !< row of a_k for k < N; 0 for the last material
+    procedure :: fraction => row_of_fraction !< row of a_k; 0 for the second of two and for a single material
     procedure :: energy => row_of_energy !< row of the energy of material k per volume of the cell; 0 where not stored
     procedure :: density => row_of_density !< row of the density of the mixture
     procedure :: sound_speed => row_of_sound_speed !< row of the sound speed of the mixture
@@ -54,7 +55,8 @@ contains
     row = n + 4
     if (n > 1) then
       layout%first_fraction_row = n + 5
-      row = 2*n + 3
+      layout%n_fractions = merge(1, n, n == 2)
+      row = n + 4 + layout%n_fractions
     end if
     do k = 1, n
       if (eos(k)%is_gas) cycle
@@ -74,9 +76,9 @@ contains
     layout%n_fluxes = n + 4
     if (n > 1) then
       layout%first_fraction_flux = n + 5
-      layout%first_material_energy_flux = 2*n + 4
-      layout%face_velocity_flux = 3*n + 4
-      layout%n_fluxes = 3*n + 4
+      layout%first_material_energy_flux = n + 5 + layout%n_fractions
+      layout%face_velocity_flux = 2*n + 5 + layout%n_fractions
+      layout%n_fluxes = layout%face_velocity_flux
     end if
   end function new_layout
 
@@ -101,7 +103,7 @@ contains
     class(layout_type), intent(in) :: self
     integer, intent(in) :: k
     row_of_fraction = 0
-    if (k < self%n_materials) row_of_fraction = self%first_fraction_row + k - 1
+    if (k <= self%n_fractions) row_of_fraction = self%first_fraction_row + k - 1
   end function row_of_fraction
 
   pure integer function row_of_energy(self, k)

@@ -108,7 +108,7 @@ contains
           text = text//' '//str(w(at(1), q, at(2), at(3)))
         end do
         if (layout%n_materials > 1) text = text//', fractions'
-        do q = 1, layout%n_materials - 1
+        do q = 1, layout%n_fractions
           text = text//' '//str(w(at(1), layout%fraction(q), at(2), at(3)))
         end do
       end associate

@@ -15,10 +15,10 @@ module material_rows
 
 contains
 
-  !> Fractions of all materials; the last is what the others leave. stored: the N-1 rows of the state.
+  !> Fractions of all materials. stored: the rows of the state, one for two materials, else all.
   pure subroutine all_fractions(n, ld, n_materials, stored, a)
     integer, intent(in) :: n, ld, n_materials
-    real(wp), intent(in) :: stored(ld, n_materials - 1)
+    real(wp), intent(in) :: stored(ld, *)
     real(wp), intent(inout) :: a(ld, n_materials)
     integer :: i, k
     if (n_materials == 2) then
@@ -27,16 +27,14 @@ contains
         a(i, 1) = stored(i, 1)
         a(i, 2) = 1 - stored(i, 1)
       end do
-      return
-    end if
-    a(:n, n_materials) = 1
-    do k = 1, n_materials - 1
-      !$omp simd
-      do i = 1, n
-        a(i, k) = stored(i, k)
-        a(i, n_materials) = a(i, n_materials) - stored(i, k)
+    else
+      do k = 1, n_materials
+        !$omp simd
+        do i = 1, n
+          a(i, k) = stored(i, k)
+        end do
       end do
-    end do
+    end if
   end subroutine all_fractions
 
   !> Energies of all materials per volume of the cell, and their sum. state: rows of the state.
@@ -125,24 +123,23 @@ contains
     end do
   end subroutine advance_total_energy
 
-  !> da/dt + div(a u) - a div u = 0 for all but the last material, which gets what is left. d_velocity: time step times div u.
+  !> da/dt + div(a u) - a div u = 0 for the stored fractions; the second of two gets what the first leaves.
+  !> d_velocity: time step times div u.
   pure subroutine advance_fractions(n, ld, n_materials, part, d, d_velocity, from, start, a)
     integer, intent(in) :: n, ld, n_materials
-    real(wp), intent(in) :: part, d(ld, n_materials - 1), d_velocity(n), from(ld, n_materials), start(ld, n_materials)
+    real(wp), intent(in) :: part, d(ld, *), d_velocity(n), from(ld, n_materials), start(ld, n_materials)
     real(wp), intent(inout) :: a(ld, n_materials)
     integer :: i, k
-    do k = 1, n_materials - 1
+    do k = 1, merge(1, n_materials, n_materials == 2)
       !$omp simd
       do i = 1, n
         a(i, k) = start(i, k) + part*((from(i, k) - start(i, k)) - (d(i, k) - from(i, k)*d_velocity(i)))
       end do
     end do
+    if (n_materials > 2) return
     !$omp simd
     do i = 1, n
-      a(i, n_materials) = 1 - a(i, 1)
-    end do
-    do k = 2, n_materials - 1
-      a(:n, n_materials) = a(:n, n_materials) - a(:n, k)
+      a(i, 2) = 1 - a(i, 1)
     end do
   end subroutine advance_fractions
 
@@ -187,12 +184,13 @@ contains
     if (lowest < 0) n_negative = count(m(:n, :) <= smallest_mass)
   end subroutine bound_masses
 
-  !> Keeps each fraction at the trace or above. n_clipped: fractions that were below 0 by more than the tolerance.
+  !> Keeps each fraction at the trace or above and their sum at 1. n_clipped: fractions that were below 0 by more than the tolerance.
   pure subroutine bound_fractions(n, ld, n_materials, trace, a, n_clipped)
     integer, intent(in) :: n, ld, n_materials
     real(wp), intent(in) :: trace
     real(wp), intent(inout) :: a(ld, n_materials)
     integer, intent(out) :: n_clipped
+    real(wp), parameter :: round_off = 1e-14_wp
     real(wp) :: lowest, excess, scale
     integer :: i, k
     lowest = 0
@@ -212,7 +210,8 @@ contains
     end do
     if (lowest < -clip_tolerance) n_clipped = 1
     do i = 1, n
-      if (all(a(i, :) >= trace)) cycle
+      excess = sum(a(i, :)) - 1
+      if (all(a(i, :) >= trace) .and. abs(excess) < round_off) cycle
       a(i, :) = max(a(i, :), trace)
       excess = sum(a(i, :)) - 1
       scale = 1 - excess/sum(a(i, :) - trace)

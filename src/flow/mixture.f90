@@ -19,7 +19,7 @@ contains
     cell = 0
     do k = 1, layout%n_materials
       cell(k) = a(k)*r(k)
-      if (k < layout%n_materials) cell(layout%fraction(k)) = a(k)
+      if (k <= layout%n_fractions) cell(layout%fraction(k)) = a(k)
     end do
     cell(layout%velocity_row:layout%velocity_row + 2) = velocity
     cell(layout%pressure_row) = p
@@ -55,10 +55,10 @@ contains
     real(wp) :: a(layout%n_materials)
     integer :: k
     a = 1
-    do k = 1, layout%n_materials - 1
+    do k = 1, layout%n_fractions
       a(k) = cell(layout%fraction(k))
     end do
-    a(layout%n_materials) = 1 - sum(a(:layout%n_materials - 1))
+    if (layout%n_materials == 2) a(2) = 1 - a(1)
   end function cell_fractions
 
   !> Internal energies of all materials per volume of the cell, as the stage counts them: of gases without their offset.

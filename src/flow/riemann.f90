@@ -116,7 +116,7 @@ contains
       call share_mass(n, ld, n_materials, wave, left, right, partial, flux)
       call upwind_fractions(n, ld, n_materials, wave(1, 1), left(1, layout%first_fraction_row), &
         right(1, layout%first_fraction_row), fractions)
-      do k = 1, n_materials - 1
+      do k = 1, n_materials
         call ride_contact(n, flux(1, u), fractions(1, k), flux(1, layout%first_fraction_flux + k - 1))
       end do
     end if
@@ -252,28 +252,26 @@ contains
     end do
   end subroutine share_mass
 
-  !> Fractions of all materials on the upwind side; the last is what the others leave. Where three or more overfill the face
-  !> (their limiters differ) they are scaled back.
+  !> Fractions of three or more materials on the upwind side, scaled to fill the face: their limiters differ.
   pure subroutine upwind_fractions(n, ld, n_materials, push, left, right, fractions)
     integer, intent(in) :: n, ld, n_materials
-    real(wp), intent(in) :: push(n), left(ld, n_materials - 1), right(ld, n_materials - 1)
+    real(wp), intent(in) :: push(n), left(ld, n_materials), right(ld, n_materials)
     real(wp), intent(inout) :: fractions(ld, n_materials)
-    real(wp) :: scale
+    real(wp) :: total(ld)
     integer :: i, k
-    fractions(:n, n_materials) = 0
-    do k = 1, n_materials - 1
-      call take_upwind(n, push, left(1, k), right(1, k), fractions(1, k), fractions(1, n_materials))
-    end do
-    do k = 1, n_materials - 1
-      !$omp simd private(scale)
-      do i = 1, n
-        scale = 1/max(fractions(i, n_materials), 1.0_wp)
-        fractions(i, k) = fractions(i, k)*scale
-      end do
+    total(:n) = 0
+    do k = 1, n_materials
+      call take_upwind(n, push, left(1, k), right(1, k), fractions(1, k), total)
     end do
     !$omp simd
     do i = 1, n
-      fractions(i, n_materials) = 1 - min(fractions(i, n_materials), 1.0_wp)
+      total(i) = 1/total(i)
+    end do
+    do k = 1, n_materials
+      !$omp simd
+      do i = 1, n
+        fractions(i, k) = fractions(i, k)*total(i)
+      end do
     end do
   end subroutine upwind_fractions
 

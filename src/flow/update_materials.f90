@@ -165,7 +165,7 @@ contains
           new(i, k) = m(i, k)
         end do
       end if
-      if (k < n_materials) new(:n, layout%first_fraction_row + k - 1) = a(:n, k)
+      if (k <= layout%n_fractions) new(:n, layout%fraction(k)) = a(:n, k)
     end do
     bad = 0
     !$omp simd private(u, v, w, inverse, c2) reduction(+:bad)

@@ -41,13 +41,17 @@ contains
 
   !> Lays bricks over the domain and gives each rank an equal run of them.
   !> cells: of the domain, 1 for an inactive direction; brick: cells of a brick, 0 where the code is to choose a divisor.
+  !> axis_order: directions from the one that the curve runs through fastest to the one that cuts the domain first (default x, y, z).
   !> Fatal (bad input) if a brick does not divide the domain or is smaller than the ghost layers.
-  subroutine build_mesh(mesh, cells, lower, upper, brick, periodic, ghosts)
+  subroutine build_mesh(mesh, cells, lower, upper, brick, periodic, ghosts, axis_order)
     type(mesh_type), intent(out) :: mesh
     integer, intent(in) :: cells(3), brick(3), ghosts
     real(wp), intent(in) :: lower(3), upper(3)
     logical, intent(in) :: periodic(3)
-    integer :: d
+    integer, intent(in), optional :: axis_order(3)
+    integer :: d, order(3)
+    order = [1, 2, 3]
+    if (present(axis_order)) order = axis_order
     mesh%cells = cells
     mesh%active = cells > 1
     mesh%dimensions = count(mesh%active)
@@ -67,7 +71,7 @@ contains
         ' cells is smaller than the '//str(ghosts)//' ghost layers', exit_bad_input)
     end do
     mesh%bricks = cells/mesh%brick_cells
-    call lay_bricks(mesh)
+    call lay_bricks(mesh, order)
     call assign_ranks(mesh, [(1.0_wp, d=1, size(mesh%brick))])
   end subroutine build_mesh
 
@@ -89,8 +93,9 @@ contains
     end do
   end function chosen_divisor
 
-  subroutine lay_bricks(mesh)
+  subroutine lay_bricks(mesh, axis_order)
     type(mesh_type), intent(inout) :: mesh
+    integer, intent(in) :: axis_order(3)
     integer, allocatable :: curve(:, :, :), order(:)
     integer(i8), allocatable :: key(:)
     integer :: n, i, j, k, b, location(3), next(3), d(3)
@@ -101,7 +106,8 @@ contains
       do j = 0, mesh%bricks(2) - 1
         do i = 0, mesh%bricks(1) - 1
           b = b + 1
-          key(b) = morton_key([i, j, k])
+          location = [i, j, k]
+          key(b) = morton_key(location(axis_order))
           order(b) = b
         end do
       end do

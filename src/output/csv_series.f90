@@ -59,7 +59,7 @@ contains
       ' columns and got a row of '//str(size(values)))
     row = ''
     do i = 1, size(values)
-      write (field, '(es24.16e3)') values(i)
+      write (field, '(es24.16e3)') values(i) + 0.0_wp ! -0 becomes 0, as in a sum over ranks: the same file from any number
       if (i > 1) row = row//','
       row = row//trim(adjustl(field))
     end do

@@ -48,21 +48,32 @@ contains
     end do
   end subroutine linear
 
-  !> Coefficients 1, x, y, z, xy, xz, yz, xyz of the trilinear function that variable v of a node field has in cell (i, j, k).
-  pure function trilinear(n, n_var, a, v, i, j, k) result(c)
-    integer, intent(in) :: n(3), n_var, v, i, j, k
+  !> Coefficients 1, x, y, z, xy, xz, yz, xyz of the trilinear functions that variables first+1..first+3 of a node field have in
+  !> cell (i, j, k).
+  pure subroutine trilinear(n, n_var, a, first, i, j, k, c)
+    integer, intent(in) :: n(3), n_var, first, i, j, k
     real(wp), intent(in) :: a(0:n(1), n_var, 0:n(2), 0:n(3))
-    real(wp) :: c(8), low, high
-    low = a(i - 1, v, j - 1, k)
-    high = a(i, v, j - 1, k)
-    c(1) = a(i - 1, v, j - 1, k - 1)
-    c(2) = a(i, v, j - 1, k - 1) - c(1)
-    c(3) = a(i - 1, v, j, k - 1) - c(1)
-    c(4) = low - c(1)
-    c(5) = (a(i, v, j, k - 1) - a(i - 1, v, j, k - 1)) - c(2)
-    c(6) = (high - low) - c(2)
-    c(7) = (a(i - 1, v, j, k) - low) - c(3)
-    c(8) = ((a(i, v, j, k) - a(i - 1, v, j, k)) - (high - low)) - c(5)
-  end function trilinear
+    real(wp), intent(out) :: c(8, 3)
+    real(wp) :: v1, v2, v3, v4, v5, v6, v7, v8
+    integer :: d
+    do d = 1, 3
+      v1 = a(i - 1, first + d, j - 1, k - 1)
+      v2 = a(i, first + d, j - 1, k - 1)
+      v3 = a(i - 1, first + d, j, k - 1)
+      v4 = a(i, first + d, j, k - 1)
+      v5 = a(i - 1, first + d, j - 1, k)
+      v6 = a(i, first + d, j - 1, k)
+      v7 = a(i - 1, first + d, j, k)
+      v8 = a(i, first + d, j, k)
+      c(1, d) = v1
+      c(2, d) = v2 - v1
+      c(3, d) = v3 - v1
+      c(4, d) = v5 - v1
+      c(5, d) = (v4 - v3) - (v2 - v1)
+      c(6, d) = (v6 - v5) - (v2 - v1)
+      c(7, d) = (v7 - v5) - (v3 - v1)
+      c(8, d) = ((v8 - v7) - (v6 - v5)) - ((v4 - v3) - (v2 - v1))
+    end do
+  end subroutine trilinear
 
 end module cell_functions

@@ -28,9 +28,7 @@ contains
         do i = 1, frame%n(1)
           cell = cell + 1
           if (cell_start(cell + 1) == cell_start(cell)) cycle
-          do d = 1, 3
-            c(:, d) = trilinear(frame%n, 3, change, d, i, j, k)
-          end do
+          call trilinear(frame%n, 3, change, 0, i, j, k, c)
           do first = cell_start(cell), cell_start(cell + 1) - 1, piece
             n = min(piece, cell_start(cell + 1) - first)
             call weights(frame, n, [i, j, k], f(first, at_position), f(first, at_position + 1), f(first, at_position + 2), &
@@ -65,15 +63,15 @@ contains
     real(wp), intent(in) :: flip, node(0:frame%n(1), 4, 0:frame%n(2), 0:frame%n(3))
     real(wp), intent(in) :: wx(piece, 2), wy(piece, 2), wz(piece, 2)
     real(wp), intent(inout) :: f(capacity, n_field)
-    real(wp) :: c(8), pic(piece)
+    real(wp) :: c(8, 3), pic(piece)
     integer :: d, i, j, k, q
     i = cell(1)
     j = cell(2)
     k = cell(3)
+    call trilinear(frame%n, 4, node, 1, i, j, k, c)
     do d = 1, 3
-      c = trilinear(frame%n, 4, node, d + 1, i, j, k)
       pic(:n) = 0
-      call add_field(n, c, wx(:, 2), wy(:, 2), wz(:, 2), pic)
+      call add_field(n, c(:, d), wx(:, 2), wy(:, 2), wz(:, 2), pic)
       do q = 1, n
         f(first + q - 1, at_velocity + d - 1) = flip*f(first + q - 1, at_velocity + d - 1) + (1 - flip)*pic(q)
       end do
@@ -95,7 +93,7 @@ contains
     real(wp), intent(in) :: mapped(0:frame%n(1), 3, 0:frame%n(2), 0:frame%n(3))
     real(wp), intent(out) :: gradient(chunk, 9)
     integer, intent(out) :: n_moved, moved(chunk)
-    real(wp) :: x(chunk), y(chunk), z(chunk), c(8), o(3)
+    real(wp) :: x(chunk), y(chunk), z(chunk), c(8, 3), o(3)
     integer :: start, stop_at, n, d, i, j, k, q, outside
     n_moved = 0
     start = first
@@ -110,12 +108,16 @@ contains
         call local_coordinate(n, f(start, at_position), frame%lower(1), frame%inverse(1), o(1), x)
         call local_coordinate(n, f(start, at_position + 1), frame%lower(2), frame%inverse(2), o(2), y)
         call local_coordinate(n, f(start, at_position + 2), frame%lower(3), frame%inverse(3), o(3), z)
+        q = start - first + 1
+        call trilinear(frame%n, 4, node, 1, i, j, k, c)
+        c = dt*c
         do d = 1, 3
-          c = dt*trilinear(frame%n, 4, node, d + 1, i, j, k)
-          call add_field(n, c, x, y, z, f(start, at_position + d - 1))
-          c = dt*trilinear(frame%n, 3, mapped, d, i, j, k)
-          q = start - first + 1
-          call field_gradient(n, c, frame%inverse, x, y, z, gradient(q, 3*d - 2), gradient(q, 3*d - 1), gradient(q, 3*d))
+          call add_field(n, c(:, d), x, y, z, f(start, at_position + d - 1))
+        end do
+        call trilinear(frame%n, 3, mapped, 0, i, j, k, c)
+        c = dt*c
+        do d = 1, 3
+          call field_gradient(n, c(:, d), frame%inverse, x, y, z, gradient(q, 3*d - 2), gradient(q, 3*d - 1), gradient(q, 3*d))
         end do
         call count_outside(n, frame, o, f(start, at_position), f(start, at_position + 1), f(start, at_position + 2), outside)
         if (outside > 0) call list_outside(n, frame, o, f(start, at_position), f(start, at_position + 1), &

@@ -161,7 +161,7 @@ contains
     call MPI_Waitall(n_requests, request(:n_requests), MPI_STATUSES_IGNORE)
     do b = 1, mesh%n_local
       do set = 1, solid%n_sets
-        call sort_particles(solid%block(set, b))
+        call sort_particles(solid%block(set, b), solid%space)
       end do
     end do
   end subroutine exchange_particles

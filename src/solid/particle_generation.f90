@@ -163,7 +163,7 @@ contains
     integer :: b, set
     do b = 1, size(solid%block, 2)
       do set = 1, solid%n_sets
-        call sort_particles(solid%block(set, b))
+        call sort_particles(solid%block(set, b), solid%space)
       end do
     end do
   end subroutine sort_solid

@@ -39,6 +39,15 @@ module particles
     integer, allocatable :: moved_cell(:) !< their new cells; 0: gone from this brick
   end type particle_block
 
+  !> Work space of sort_particles, kept between sorts because fresh memory costs more than the sort itself.
+  type, public :: sort_space
+    private
+    integer :: n_runs = 0
+    integer, allocatable :: from(:), to(:), length(:) !< runs of particles that move together
+    integer, allocatable :: integers(:)
+    real(wp), allocatable :: column(:)
+  end type sort_space
+
 contains
 
   !> An empty block for n_cells cells and n_field columns.
@@ -111,128 +120,152 @@ contains
   !>
   !> Resident particles keep their order, so only the moved ones are sorted (counting sort by cell, insertion by id) and merged in;
   !> the columns are then moved by runs, and runs that stay in place are not touched.
-  subroutine sort_particles(block)
+  subroutine sort_particles(block, space)
     type(particle_block), intent(inout) :: block
-    integer, allocatable :: arriving(:), first(:), run_from(:), run_to(:), run_length(:), new_start(:), integers(:)
-    real(wp), allocatable :: column(:)
-    integer :: n_cells, n_resident, n_runs, cell, i, k, low, high, leaving, position, source, stop_at, total
+    type(sort_space), intent(inout) :: space
+    integer :: total
     if (block%n_moved == 0) return
+    call list_runs(block, space, total)
+    call move_runs(block, space)
+    block%n = total
+    block%n_moved = 0
+  end subroutine sort_particles
+
+  !> The new order as runs of old indices; block%cell_start is that of the new order on return. total: particles that remain.
+  subroutine list_runs(block, space, total)
+    type(particle_block), intent(inout) :: block
+    type(sort_space), intent(inout) :: space
+    integer, intent(out) :: total
+    integer, allocatable :: arriving(:), first(:)
+    integer :: n_cells, n_resident, cell, leaving, position, source, stop_at, start
     n_cells = size(block%cell_start) - 1
     n_resident = block%cell_start(n_cells + 1) - 1
     call sort_arrivals(block, n_cells, arriving, first)
-    allocate (run_from(4*block%n_moved + 4), run_to(4*block%n_moved + 4), run_length(4*block%n_moved + 4), new_start(n_cells + 1))
-    n_runs = 0
+    space%n_runs = 0
     leaving = 1
     total = 0
+    stop_at = 1
     do cell = 1, n_cells
-      new_start(cell) = total + 1
-      position = first(cell)
-      source = block%cell_start(cell)
+      source = stop_at
       stop_at = block%cell_start(cell + 1)
-      if (position < first(cell + 1) .or. next_leaving() < stop_at) then
-        do while (source < stop_at .or. position < first(cell + 1))
-          if (source < stop_at) then
-            if (next_leaving() == source) then
-              source = source + 1
-              leaving = leaving + 1
-              cycle
-            end if
+      position = first(cell)
+      start = total + 1
+      do while (source < stop_at .or. position < first(cell + 1))
+        if (source < stop_at .and. position == first(cell + 1)) then
+          ! nothing arrives (any more): all up to the next one that leaves
+          if (next_leaving() >= stop_at) then
+            call add_run(space, total, source, stop_at - source)
+            source = stop_at
+            cycle
           end if
-          if (position < first(cell + 1) .and. source < stop_at) then
-            if (block%id(arriving(position)) < block%id(source)) then
-              call add_run(arriving(position), 1)
-              position = position + 1
-            else
-              call add_run(source, 1)
-              source = source + 1
-            end if
-          else if (source < stop_at) then
-            call add_run(source, 1)
-            source = source + 1
-          else
-            call add_run(arriving(position), 1)
-            position = position + 1
-          end if
-        end do
-      else
-        call add_run(source, stop_at - source)
-      end if
-    end do
-    new_start(n_cells + 1) = total + 1
-    block%cell_start = new_start
-
-    low = huge(low)
-    high = 0
-    do k = 1, n_runs
-      if (run_from(k) == run_to(k)) cycle
-      low = min(low, run_from(k), run_to(k))
-      high = max(high, run_from(k) + run_length(k) - 1, run_to(k) + run_length(k) - 1)
-    end do
-    if (high > 0) then
-      allocate (column(low:high), integers(low:high))
-      integers = block%id(low:high)
-      call place_integers(block%id)
-      integers = block%body(low:high)
-      call place_integers(block%body)
-      do i = 1, size(block%f, 2)
-        column = block%f(low:high, i)
-        do k = 1, n_runs
-          if (run_from(k) == run_to(k)) cycle
-          block%f(run_to(k):run_to(k) + run_length(k) - 1, i) = column(run_from(k):run_from(k) + run_length(k) - 1)
-        end do
+        end if
+        if (source < stop_at .and. next_leaving() == source) then
+          source = source + 1
+          leaving = leaving + 1
+        else if (position == first(cell + 1)) then
+          call add_run(space, total, source, 1)
+          source = source + 1
+        else if (source == stop_at) then
+          call add_run(space, total, arriving(position), 1)
+          position = position + 1
+        else if (block%id(arriving(position)) < block%id(source)) then
+          call add_run(space, total, arriving(position), 1)
+          position = position + 1
+        else
+          call add_run(space, total, source, 1)
+          source = source + 1
+        end if
       end do
-    end if
-    block%n = total
-    block%n_moved = 0
+      block%cell_start(cell) = start
+    end do
+    block%cell_start(n_cells + 1) = total + 1
 
   contains
 
-    integer function next_leaving()
+    pure integer function next_leaving()
       next_leaving = huge(next_leaving)
       if (leaving <= block%n_moved) then
         if (block%moved_index(leaving) <= n_resident) next_leaving = block%moved_index(leaving)
       end if
     end function next_leaving
 
-    subroutine add_run(from, length)
-      integer, intent(in) :: from, length
-      integer, allocatable :: longer(:)
-      if (length == 0) return
-      if (n_runs > 0) then
-        if (run_from(n_runs) + run_length(n_runs) == from) then
-          run_length(n_runs) = run_length(n_runs) + length
-          total = total + length
-          return
-        end if
-      end if
-      if (n_runs == size(run_from)) then
-        allocate (longer(2*n_runs))
-        longer(:n_runs) = run_from
-        call move_alloc(longer, run_from)
-        allocate (longer(2*n_runs))
-        longer(:n_runs) = run_to
-        call move_alloc(longer, run_to)
-        allocate (longer(2*n_runs))
-        longer(:n_runs) = run_length
-        call move_alloc(longer, run_length)
-      end if
-      n_runs = n_runs + 1
-      run_from(n_runs) = from
-      run_to(n_runs) = total + 1
-      run_length(n_runs) = length
-      total = total + length
-    end subroutine add_run
+  end subroutine list_runs
 
-    subroutine place_integers(values)
-      integer, intent(inout) :: values(:)
-      integer :: run
-      do run = 1, n_runs
-        if (run_from(run) == run_to(run)) cycle
-        values(run_to(run):run_to(run) + run_length(run) - 1) = integers(run_from(run):run_from(run) + run_length(run) - 1)
+  !> Adds particles from, from + 1, ... to the new order; they lengthen the last run if they follow it.
+  subroutine add_run(space, total, from, length)
+    type(sort_space), intent(inout) :: space
+    integer, intent(inout) :: total
+    integer, intent(in) :: from, length
+    integer :: n
+    n = space%n_runs
+    if (.not. allocated(space%from)) allocate (space%from(64), space%to(64), space%length(64))
+    if (n > 0) then
+      if (space%from(n) + space%length(n) == from) then
+        space%length(n) = space%length(n) + length
+        total = total + length
+        return
+      end if
+    end if
+    if (n == size(space%from)) then
+      call lengthen(space%from, 2*n)
+      call lengthen(space%to, 2*n)
+      call lengthen(space%length, 2*n)
+    end if
+    space%n_runs = n + 1
+    space%from(n + 1) = from
+    space%to(n + 1) = total + 1
+    space%length(n + 1) = length
+    total = total + length
+  end subroutine add_run
+
+  subroutine lengthen(list, n)
+    integer, allocatable, intent(inout) :: list(:)
+    integer, intent(in) :: n
+    integer, allocatable :: longer(:)
+    allocate (longer(n), source=0)
+    longer(:size(list)) = list
+    call move_alloc(longer, list)
+  end subroutine lengthen
+
+  !> Brings all columns into the order of the runs.
+  subroutine move_runs(block, space)
+    type(particle_block), intent(inout) :: block
+    type(sort_space), intent(inout) :: space
+    integer :: low, high, i, k
+    low = huge(low)
+    high = 0
+    do k = 1, space%n_runs
+      if (space%from(k) == space%to(k)) cycle
+      low = min(low, space%from(k), space%to(k))
+      high = max(high, max(space%from(k), space%to(k)) + space%length(k) - 1)
+    end do
+    if (high == 0) return
+    if (allocated(space%column)) then
+      if (size(space%column) < block%capacity) deallocate (space%column, space%integers)
+    end if
+    if (.not. allocated(space%column)) allocate (space%column(block%capacity), space%integers(block%capacity))
+    call place_integers(space, low, high, block%id)
+    call place_integers(space, low, high, block%body)
+    do i = 1, size(block%f, 2)
+      space%column(low:high) = block%f(low:high, i)
+      do k = 1, space%n_runs
+        if (space%from(k) == space%to(k)) cycle
+        block%f(space%to(k):space%to(k) + space%length(k) - 1, i) = space%column(space%from(k):space%from(k) + space%length(k) - 1)
       end do
-    end subroutine place_integers
+    end do
+  end subroutine move_runs
 
-  end subroutine sort_particles
+  subroutine place_integers(space, low, high, values)
+    type(sort_space), intent(inout) :: space
+    integer, intent(in) :: low, high
+    integer, intent(inout) :: values(:)
+    integer :: k
+    space%integers(low:high) = values(low:high)
+    do k = 1, space%n_runs
+      if (space%from(k) == space%to(k)) cycle
+      values(space%to(k):space%to(k) + space%length(k) - 1) = space%integers(space%from(k):space%from(k) + space%length(k) - 1)
+    end do
+  end subroutine place_integers
 
   !> Indices of the moved particles that stay in this brick, in (cell, id) order; first(cell) is where a cell's list starts.
   subroutine sort_arrivals(block, n_cells, arriving, first)

@@ -149,13 +149,13 @@ contains
     end do
   end subroutine force_of_few
 
-  !> Mass and momentum at the eight nodes: loops over particles inside.
+  !> Mass and momentum at the eight nodes: loops over particles inside, two nodes at a time.
   pure subroutine momentum_of_many(n, capacity, f, wx, wy, wz, total)
     integer, intent(in) :: n, capacity
     real(wp), intent(in) :: f(capacity, *), wx(piece, 2), wy(piece, 2), wz(piece, 2)
     real(wp), intent(out) :: total(8, 4)
-    real(wp) :: mass(piece, 4), w, s0, s1, s2, s3
-    integer :: q, a, b
+    real(wp) :: mass(piece, 4), w, a0, a1, a2, a3, b0, b1, b2, b3
+    integer :: q, b
     !$omp simd
     do q = 1, n
       mass(q, 1) = f(q, at_mass)*(wy(q, 1)*wz(q, 1))
@@ -164,18 +164,23 @@ contains
       mass(q, 4) = f(q, at_mass)*(wy(q, 2)*wz(q, 2))
     end do
     do b = 1, 4
-      do a = 1, 2
-        s0 = 0; s1 = 0; s2 = 0; s3 = 0
-        !$omp simd private(w) reduction(+:s0, s1, s2, s3)
-        do q = 1, n
-          w = mass(q, b)*wx(q, a)
-          s0 = s0 + w
-          s1 = s1 + w*f(q, at_velocity)
-          s2 = s2 + w*f(q, at_velocity + 1)
-          s3 = s3 + w*f(q, at_velocity + 2)
-        end do
-        total(2*(b - 1) + a, :) = [s0, s1, s2, s3]
+      a0 = 0; a1 = 0; a2 = 0; a3 = 0
+      b0 = 0; b1 = 0; b2 = 0; b3 = 0
+      !$omp simd private(w) reduction(+:a0, a1, a2, a3, b0, b1, b2, b3)
+      do q = 1, n
+        w = mass(q, b)*wx(q, 1)
+        a0 = a0 + w
+        a1 = a1 + w*f(q, at_velocity)
+        a2 = a2 + w*f(q, at_velocity + 1)
+        a3 = a3 + w*f(q, at_velocity + 2)
+        w = mass(q, b)*wx(q, 2)
+        b0 = b0 + w
+        b1 = b1 + w*f(q, at_velocity)
+        b2 = b2 + w*f(q, at_velocity + 1)
+        b3 = b3 + w*f(q, at_velocity + 2)
       end do
+      total(2*b - 1, :) = [a0, a1, a2, a3]
+      total(2*b, :) = [b0, b1, b2, b3]
     end do
   end subroutine momentum_of_many
 
@@ -184,7 +189,7 @@ contains
     integer, intent(in) :: n, capacity
     real(wp), intent(in) :: inverse(3), f(capacity, *), wx(piece, 2), wy(piece, 2), wz(piece, 2)
     real(wp), intent(out) :: total(8, 3)
-    real(wp) :: flux(piece, 6), face(3, 4, 3), v
+    real(wp) :: flux(piece, 6), face(3, 2, 2, 3), v
     integer :: q, a, b, c, l
     !$omp simd private(v)
     do q = 1, n
@@ -196,37 +201,44 @@ contains
       flux(q, 5) = v*f(q, sxz)
       flux(q, 6) = v*f(q, sxy)
     end do
-    do b = 1, 4
-      l = 1 + mod(b - 1, 2)
-      c = 1 + (b - 1)/2
-      face(:, b, 1) = inverse(1)*face_sum(n, flux(:, 1), flux(:, 6), flux(:, 5), wy(:, l), wz(:, c))
-      face(:, b, 2) = inverse(2)*face_sum(n, flux(:, 6), flux(:, 2), flux(:, 4), wx(:, l), wz(:, c))
-      face(:, b, 3) = inverse(3)*face_sum(n, flux(:, 5), flux(:, 4), flux(:, 3), wx(:, l), wy(:, c))
+    do c = 1, 2
+      call face_sums(n, flux(:, 1), flux(:, 6), flux(:, 5), wy, wz(:, c), face(:, :, c, 1))
+      call face_sums(n, flux(:, 6), flux(:, 2), flux(:, 4), wx, wz(:, c), face(:, :, c, 2))
+      call face_sums(n, flux(:, 5), flux(:, 4), flux(:, 3), wx, wy(:, c), face(:, :, c, 3))
+    end do
+    do c = 1, 3
+      face(:, :, :, c) = face(:, :, :, c)*inverse(c)
     end do
     do l = 0, 7
       a = iand(l, 1)
       b = iand(l/2, 1)
       c = l/4
-      total(l + 1, :) = (1 - 2*a)*face(:, 1 + b + 2*c, 1) + (1 - 2*b)*face(:, 1 + a + 2*c, 2) + (1 - 2*c)*face(:, 1 + a + 2*b, 3)
+      total(l + 1, :) = (1 - 2*a)*face(:, 1 + b, 1 + c, 1) + (1 - 2*b)*face(:, 1 + a, 1 + c, 2) + (1 - 2*c)*face(:, 1 + a, 1 + b, 3)
     end do
   end subroutine force_of_many
 
-  !> Sum over n particles of (f1, f2, f3) times the weight u v of a corner of a cell face.
-  pure function face_sum(n, f1, f2, f3, u, v) result(total)
+  !> Sums over n particles of (f1, f2, f3) times the weights u(:,1) v and u(:,2) v of two corners of a cell face.
+  pure subroutine face_sums(n, f1, f2, f3, u, v, total)
     integer, intent(in) :: n
-    real(wp), intent(in) :: f1(piece), f2(piece), f3(piece), u(piece), v(piece)
-    real(wp) :: total(3), w, s1, s2, s3
+    real(wp), intent(in) :: f1(piece), f2(piece), f3(piece), u(piece, 2), v(piece)
+    real(wp), intent(out) :: total(3, 2)
+    real(wp) :: w, a1, a2, a3, b1, b2, b3
     integer :: q
-    s1 = 0; s2 = 0; s3 = 0
-    !$omp simd private(w) reduction(+:s1, s2, s3)
+    a1 = 0; a2 = 0; a3 = 0
+    b1 = 0; b2 = 0; b3 = 0
+    !$omp simd private(w) reduction(+:a1, a2, a3, b1, b2, b3)
     do q = 1, n
-      w = u(q)*v(q)
-      s1 = s1 + w*f1(q)
-      s2 = s2 + w*f2(q)
-      s3 = s3 + w*f3(q)
+      w = u(q, 1)*v(q)
+      a1 = a1 + w*f1(q)
+      a2 = a2 + w*f2(q)
+      a3 = a3 + w*f3(q)
+      w = u(q, 2)*v(q)
+      b1 = b1 + w*f1(q)
+      b2 = b2 + w*f2(q)
+      b3 = b3 + w*f3(q)
     end do
-    total = [s1, s2, s3]
-  end function face_sum
+    total = reshape([a1, a2, a3, b1, b2, b3], [3, 2])
+  end subroutine face_sums
 
   !> Sum of each node's function over the particles of one cell.
   pure subroutine sum_functions(frame, cell, capacity, n_field, f, first, last, total)

@@ -3,7 +3,7 @@ module solid_state
   use blocks, only: block, allocate_nodes, allocate_cells
   use kinds, only: wp
   use mesh, only: mesh_type
-  use particles, only: particle_block
+  use particles, only: particle_block, sort_space
   use solid_material, only: solid_material_type
   use cell_functions, only: cell_frame
   implicit none
@@ -67,6 +67,7 @@ module solid_state
     type(support_list), allocatable :: support(:) !< by local brick
     type(limit_type), allocatable :: limit(:, :) !< (set, local brick)
     real(wp), allocatable :: books(:, :) !< (n_books, local brick), summed since the start
+    type(sort_space) :: space !< scratch of the sorts
     integer :: face(2, 3) = face_free !< what the low and high faces do
     type(clamp_box), allocatable :: clamp(:)
     real(wp) :: cfl = 0.5_wp

@@ -1,9 +1,9 @@
 """The flow as a picture: slices, schlieren, lines along x."""
 import numpy as np
 
-from snapshot_files import AXES
+from snapshot_files import AXES, place_text
 from solid_pictures import mirrored
-from style import colour_bar, colour_range, readable, save, time_text, titled, words, plt
+from style import LogNorm, colour_bar, colour_range, readable, robust_top, save, time_text, titled, words, plt
 
 
 def plane_axes(flow, axis):
@@ -34,9 +34,11 @@ def draw_slice(axes, flow, name, axis=None, position=0.0, mirror=None, wanted=No
     first, second, across = plane_axes(flow, axis)
     plane, place = flow.layer(name, axis, position)
     box = (flow.lower[first], flow.upper[first], flow.lower[second], flow.upper[second])
-    factor, unit = readable(plane, flow.unit(name))
+    factor, unit = readable([robust_top(name, plane)], flow.unit(name))
     values, extent = unfolded(factor * plane, box, first, second, mirror)
     norm, colours = colour_range(name, values, wanted, log)
+    if isinstance(norm, LogNorm):
+        values = np.maximum(values, norm.vmin)
     axes.imshow(values, extent=extent, origin="lower", norm=norm, cmap=colours, interpolation="antialiased")
     if interfaces and name != "schlieren" and not name.startswith("volume_fraction"):
         for fraction in [f for f in flow.data if f.startswith("volume_fraction")][:-1]:
@@ -97,7 +99,7 @@ def draw_closed_cells(axes, flow, axis, position, box, first, second, mirror):
 
 
 def slice_title(flow, name, axis, place):
-    where = f", {AXES[axis]} = {place:.4g}" + ("" if flow.length_unit in ("-", "") else f" {flow.length_unit}") if axis is not None else ""
+    where = "" if axis is None else ", " + place_text(flow, axis, place)
     return f"{words(name)}{where}, {time_text(flow.time, flow.time_unit)}"
 
 

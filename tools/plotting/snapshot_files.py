@@ -13,6 +13,11 @@ def text(value):
     return (value.decode() if isinstance(value, bytes) else str(value)).strip()
 
 
+def place_text(snapshot, axis, place):
+    """'y = 0.008 m'."""
+    return f"{AXES[axis]} = {place:.3g}" + ("" if snapshot.length_unit in ("-", "") else f" {snapshot.length_unit}")
+
+
 def open_snapshot(path):
     """A Flow or a Solid, by what the file says of itself."""
     try:
@@ -137,6 +142,8 @@ class Flow(Snapshot):
             if density.shape[direction] > 1:
                 slope += np.gradient(density, steps[direction], axis=direction) ** 2
         slope = np.sqrt(slope)
+        if "cell_type" in self.data:  # the gas frozen inside a solid has nothing to show
+            slope[self.layer("cell_type", axis, position)[0] > 0.5] = 0.0
         largest = np.percentile(slope, 99.8)
         return np.exp(-8 * slope / largest) if largest > 0 else np.ones_like(slope)
 

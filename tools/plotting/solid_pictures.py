@@ -4,7 +4,7 @@ The particles are painted far to near into a picture with a depth for each point
 craters, cracks and bulges show. That is fast for millions of particles and keeps true coordinates on the axes."""
 import numpy as np
 
-from snapshot_files import AXES
+from snapshot_files import AXES, place_text
 from style import colour_bar, colour_range, readable, save, time_text, titled, words, plt
 
 BACKGROUND = 1.0
@@ -67,16 +67,41 @@ def paint(position, values, size, frame, bounds=None):
     depths = np.full((ny, nx), np.nan)
     picture[seen] = values[order][owner[seen]]
     depths[seen] = depth[order][owner[seen]]
+    close_gaps([picture, depths], max(int(round(0.6 * size / point)), 1))
     return picture, depths, (bounds[0], bounds[0] + nx * point, bounds[2], bounds[2] + ny * point), point
 
 
-def blurred(values, radius):
-    """Mean over a square window, leaving out what is not a number."""
+def close_gaps(layers, radius):
+    """Fills the narrow gaps that open between the particles of a stretched body (not wider than about a particle) with the mean of
+    what lies around them; wider ones stay open."""
+    seen = np.isfinite(layers[0])
+    closed = ~window_any(~window_any(seen, radius), radius)
+    gaps = closed & ~seen
+    if not gaps.any():
+        return
+    for layer in layers:
+        layer[gaps] = blurred(layer, radius, everywhere=True)[gaps]
+
+
+def window_any(mask, radius):
+    """True where the mask is true anywhere within the radius."""
+    padded = np.pad(mask, radius)
+    wide = np.zeros((padded.shape[0], mask.shape[1]), dtype=bool)
+    for shift in range(2 * radius + 1):
+        wide |= padded[:, shift:shift + mask.shape[1]]
+    tall = np.zeros_like(mask)
+    for shift in range(2 * radius + 1):
+        tall |= wide[shift:shift + mask.shape[0]]
+    return tall
+
+
+def blurred(values, radius, everywhere=False):
+    """Mean over a square window, leaving out what is not a number; there it stays so, unless it is wanted everywhere."""
     good = np.isfinite(values)
     total, count = np.where(good, values, 0.0), good.astype(float)
     for axis in (0, 1):
         total, count = window_sum(total, radius, axis), window_sum(count, radius, axis)
-    return np.where(good, total / np.maximum(count, 1), np.nan)
+    return np.where(good | everywhere, total / np.maximum(count, 1), np.nan)
 
 
 def window_sum(values, radius, axis):
@@ -118,9 +143,11 @@ def side_name(direction):
     return "(" + ", ".join(f"{c:g}" for c in direction) + ")"
 
 
-def draw_view(axes, solid, name, direction, mirror=None, wanted=None, log=None, bounds=None):
-    """Draws the solid seen from a direction; gives a mappable for the colour bar and the title of its scale."""
-    factor, unit = readable(solid.field(name), solid.unit(name))
+def draw_view(axes, solid, name, direction, mirror=None, wanted=None, log=None, bounds=None, scale=None):
+    """Draws the solid seen from a direction; gives a mappable for the colour bar and the title of its scale.
+
+    mirror: {axis: place of a symmetry plane}; wanted: range of the colours; scale: factor and unit of the numbers."""
+    factor, unit = scale or readable(solid.field(name), solid.unit(name))
     position, values = mirrored(solid.position, factor * solid.field(name), mirror or {})
     frame = view_frame(direction)
     size = solid.size()
@@ -133,21 +160,22 @@ def draw_view(axes, solid, name, direction, mirror=None, wanted=None, log=None, 
     return plt.cm.ScalarMappable(norm, colours), titled(name, unit)
 
 
-def draw_section(axes, solid, name, axis, place, mirror=None, wanted=None, log=None, bounds=None):
-    """Draws the particles within half a particle of a plane across an axis, seen against the axis (x) or along it (y: z stays up)."""
-    factor, unit = readable(solid.field(name), solid.unit(name))
+def draw_section(axes, solid, name, axis, place, mirror=None, wanted=None, log=None, bounds=None, scale=None):
+    """Draws the particles at a plane across an axis, those nearest to it on top; x and z look towards the eye, y away from it."""
+    factor, unit = scale or readable(solid.field(name), solid.unit(name))
     size = solid.size()
     position, values = mirrored(solid.position, factor * solid.field(name), mirror or {})
-    near = np.abs(position[:, axis] - place) <= 0.75 * size
+    distance = np.abs(position[:, axis] - place)
+    near = distance <= 2 * size  # a stretched body has none nearer in places
     direction = np.eye(3)[axis] * (-1 if axis == 1 else 1)
     frame = view_frame(direction)
     bounds = bounds or default_bounds(solid, frame, mirror)
     if not near.any():
-        near = np.abs(position[:, axis] - place) <= 2 * size
-    if not near.any():
         axes.text(0.5, 0.5, "no particle here", ha="center", va="center", transform=axes.transAxes)
         return None, None
-    picture, _, extent, _ = paint(position[near], values[near], 1.15 * size, frame, bounds)
+    position = position[near].copy()
+    position[:, axis] = -direction[axis] * distance[near]
+    picture, _, extent, _ = paint(position, values[near], 1.15 * size, frame, bounds)
     norm, colours = colour_range(name, picture, wanted, log)
     axes.imshow(coloured(picture, norm, colours), extent=extent, origin="lower", interpolation="antialiased")
     axes.set_aspect("equal")
@@ -184,7 +212,7 @@ def solid_picture(solid, name, path, direction=None, axis=None, place=None, mirr
         what = f"seen from {side_name(direction)}"
     else:
         mappable, title = draw_section(axes, solid, name, axis, place, mirror, wanted, log)
-        what = f"cut at {AXES[axis]} = {place:.4g}"
+        what = f"cut at {place_text(solid, axis, place)}"
     if mappable is not None:
         colour_bar(figure, mappable, axes, title)
     axes.set_title(f"{words(name)}, {what}, {time_text(solid.time, solid.time_unit)}", loc="left")

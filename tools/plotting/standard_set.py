@@ -7,9 +7,9 @@ import numpy as np
 
 from curve_pictures import curves_picture, read_table
 from flow_pictures import draw_slice, lines_picture, plane_axes, slice_picture
-from snapshot_files import AXES, SnapshotError, open_snapshot
+from snapshot_files import AXES, SnapshotError, open_snapshot, place_text
 from solid_pictures import default_bounds, draw_section, draw_view, side_name, view_frame
-from style import colour_bar, save, time_text, titled, words, plt
+from style import colour_bar, colour_range, readable, save, time_text, titled, words, plt
 
 
 class Run:
@@ -78,8 +78,17 @@ def flow_planes(run, flow, solid):
 
 
 def thin_axis(solid):
+    """The direction across a plate; None for a body that is no plate."""
     low, high = solid.extent()
-    return int(np.argmin(np.where(np.isin(range(3), solid.active), high - low, np.inf)))
+    size = np.sort(high - low)
+    return int(np.argmin(high - low)) if len(solid.active) == 3 and size[0] < 0.4 * size[1] else None
+
+
+def long_axis(solid):
+    """The direction along a rod; None for a body that is no rod."""
+    low, high = solid.extent()
+    size = np.sort(high - low)
+    return int(np.argmax(high - low)) if len(solid.active) == 3 and size[2] > 1.7 * size[1] else None
 
 
 def symmetry_planes(run, snapshot, among=(0, 1, 2)):
@@ -103,7 +112,7 @@ def flow_panels(run, name, n_times, picture):
         for t, (flow, solid) in enumerate(zip(flows, solids)):
             panel = panels[p * len(flows) + t, 0] if wide else panels[p, t]
             mappable, title, place = draw_slice(panel, flow, name, axis, position, mirror, solid=solid)
-            where = "" if axis is None else f", {AXES[axis]} = {place:.3g}"
+            where = "" if axis is None else ", " + place_text(flow, axis, place)
             panel.set_title(time_text(flow.time, flow.time_unit) + where, loc="left")
             if name != "schlieren":
                 colour_bar(figure, mappable, panel, title)
@@ -133,7 +142,7 @@ def flow_pictures(run):
     solid = run.solid_of(last)
     axis, position = flow_planes(run, last, solid)[0]
     mirror = symmetry_planes(run, last)
-    if solid is not None and solid.n and len(last.active) == 3:
+    if solid is not None and solid.n:
         mirror.pop(thin_axis(solid), None)
     yield slice_picture(last, "schlieren", run.path("flow_last_schlieren"), axis, position, mirror, solid=solid)
 
@@ -145,11 +154,14 @@ def peak_pictures(run):
         return
     solid = open_snapshot(run.solid[0]) if run.solid else None
     axis, position = flow_planes(run, peaks, solid)[0]
-    figure, panels = plt.subplots(1, 2, figsize=(10.5, 4.2), layout="constrained")
+    first, second, _ = plane_axes(peaks, axis)
+    slope = (peaks.upper - peaks.lower)[second] / (peaks.upper - peaks.lower)[first]
+    rows, columns, size = (2, 1, (7.6, 1.0 + 12.0 * slope)) if slope < 0.6 else (1, 2, (10.5, 0.8 + 3.7 * min(slope, 2.0)))
+    figure, panels = plt.subplots(rows, columns, figsize=size, layout="constrained")
     for panel, name in zip(panels, ("peak_overpressure", "impulse")):
         mappable, title, place = draw_slice(panel, peaks, name, axis, position, solid=solid)
         colour_bar(figure, mappable, panel, title)
-        where = "" if axis is None else f", {AXES[axis]} = {place:.3g}"
+        where = "" if axis is None else ", " + place_text(peaks, axis, place)
         panel.set_title(words(name) + where, loc="left")
     yield save(figure, run.path("peaks"))
 
@@ -171,56 +183,65 @@ def solid_pictures(run):
     if len(last.active) == 2:
         yield solid_panels(run, [last], name, [("view", [0, 0, 1])], mirror, run.path(f"solid_{name}"))
         return
-    thin = thin_axis(last)
-    along = np.eye(3)[thin]
-    across = [d for d in (1, 0, 2) if d != thin][0]
-    place = last.lower[across] if across in mirror else float(np.median(last.position[:, across]))
-    place += 0.5 * last.size() if across in mirror else 0.0
-    unfold = {d: at for d, at in mirror.items() if d != thin}
-    views = [("view", -along), ("view", along), ("section", (across, place))]
-    yield solid_panels(run, [last], name, views, unfold, run.path(f"solid_{name}"))
-    for extra in [field for field in ("pressure", "speed") if field != name]:
-        yield solid_panels(run, [last], extra, views, unfold, run.path(f"solid_{extra}"))
+    thin, long = thin_axis(last), long_axis(last)
+    kept = thin if thin is not None else long if long is not None else 2  # a wall that the body hits may be a symmetry plane: no image there
+    mirror.pop(kept, None)
+    across = [d for d in (1, 0, 2) if d != kept][0]
+    place = last.lower[across] + 0.5 * last.size() if across in mirror else float(np.median(last.position[:, across]))
+    if thin is not None:
+        views = [("view", -np.eye(3)[thin]), ("view", np.eye(3)[thin]), ("section", (across, place))]
+    else:
+        views = [("view", -np.eye(3)[1 if kept != 1 else 0]), ("section", (across, place))]
+    for field in [name] + [field for field in ("pressure", "speed") if field != name]:
+        yield solid_panels(run, [last], field, views, mirror, run.path(f"solid_{field}"))
     several = [open_snapshot(path) for path in chosen(run.solid, 5)]
     if len(several) > 1:
-        yield solid_panels(run, several, name, [("section", (across, place))], unfold, run.path(f"solid_{name}_section_in_time"))
+        yield solid_panels(run, several, name, views[-1:], mirror, run.path(f"solid_{name}_in_time"))
 
 
 def solid_panels(run, solids, name, views, mirror, picture):
-    """Views and sections of the last state side by side, or one of them at several times one below the other."""
-    shapes = []
+    """Views and sections of each state. Wide panels stand one below the other, others in a row."""
+    bounds = []
     for kind, what in views:
         direction = what if kind == "view" else np.eye(3)[what[0]] * (-1 if what[0] == 1 else 1)
-        frame = view_frame(direction)
-        boxes = np.array([default_bounds(solid, frame, mirror) for solid in solids])
-        shapes.append((boxes[:, 0].min(), boxes[:, 1].max(), boxes[:, 2].min(), boxes[:, 3].max()))
-    square = [n for n, (kind, _) in enumerate(views) if kind == "view"]
-    flat = [n for n, (kind, _) in enumerate(views) if kind == "section"]
-    rows = []
-    if square:
-        rows.append([(solids[-1], n) for n in square])
-    rows += [[(solid, n)] for solid in solids for n in flat]
-    heights = []
-    for row in rows:
-        widths = [shapes[n][1] - shapes[n][0] for _, n in row]
-        heights.append(max(shapes[n][3] - shapes[n][2] for _, n in row) / sum(widths) * 9.6 * 0.86 + 0.55)
-    figure = plt.figure(figsize=(10.0, sum(heights) + 0.4), layout="constrained")
+        boxes = np.array([default_bounds(solid, view_frame(direction), mirror) for solid in solids])
+        bounds.append((boxes[:, 0].min(), boxes[:, 1].max(), boxes[:, 2].min(), boxes[:, 3].max()))
+    panels = [(solid, n) for solid in solids for n in range(len(views))]
+    flat = [(solid, n) for solid, n in panels if slope_of(bounds[n]) < 0.4]
+    row = [panel for panel in panels if panel not in flat]
+    rows = ([row] if row else []) + [[panel] for panel in flat]
+    heights = [min(max(slope_of(bounds[n]) for _, n in row) * 8.2 / len(row), 6.5) + 0.55 for row in rows]
+    width = min(10.0, 1.6 + max(sum((height - 0.55) / slope_of(bounds[n]) + 0.7 for _, n in row) for row, height in zip(rows, heights)))
+    scale = wanted = None
+    if len(solids) > 1:  # one scale for all times
+        values = np.concatenate([solid.field(name) for solid in solids])
+        scale = readable(values, solids[-1].unit(name))
+        norm, _ = colour_range(name, scale[0] * values)
+        wanted = (norm.vmin, norm.vmax)
+    figure = plt.figure(figsize=(max(width, 5.0), sum(heights) + 0.4), layout="constrained")
     parts = figure.subfigures(len(rows), 1, height_ratios=heights, squeeze=False)[:, 0]
     for row, part in zip(rows, parts):
-        panels = part.subplots(1, len(row), squeeze=False)[0]
-        for panel, (solid, n) in zip(panels, row):
+        axes = part.subplots(1, len(row), squeeze=False)[0]
+        for panel, (solid, n) in zip(axes, row):
             kind, what = views[n]
             if kind == "view":
-                mappable, title = draw_view(panel, solid, name, what, mirror, bounds=shapes[n])
-                caption = f"seen from {side_name(what)}"
+                mappable, title = draw_view(panel, solid, name, what, mirror, wanted, bounds=bounds[n], scale=scale)
+                caption = f"seen from {side_name(what)}, "
             else:
-                mappable, title = draw_section(panel, solid, name, *what, mirror, bounds=shapes[n])
-                caption = f"cut at {AXES[what[0]]} = {what[1]:.3g}"
-            panel.set_title(f"{caption}, {time_text(solid.time, solid.time_unit)}", loc="left")
+                mappable, title = draw_section(panel, solid, name, *what, mirror, wanted, bounds=bounds[n], scale=scale)
+                caption = f"cut at {place_text(solid, *what)}, "
+            if len(row) > 3:
+                caption = ""
+            panel.set_title(caption + time_text(solid.time, solid.time_unit), loc="left")
         if mappable is not None:
-            colour_bar(part, mappable, list(panels), title, fraction=0.03, pad=0.01)
+            colour_bar(part, mappable, list(axes), title, fraction=0.03)
     figure.suptitle(f"{words(name)}   {solids[-1].title}", fontsize=10, x=0.01, ha="left")
     return save(figure, picture)
+
+
+def slope_of(bounds):
+    """Height over width."""
+    return (bounds[3] - bounds[2]) / (bounds[1] - bounds[0])
 
 
 def table_pictures(run):
