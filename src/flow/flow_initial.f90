@@ -1,7 +1,7 @@
 !> The flow at the start of a scene, from its deck: materials, boundary conditions, regions and charges.
 module flow_initial
   use constants, only: pi
-  use deck_types, only: deck_type, find_material, material_group, charge_group, region_group, unset
+  use deck_types, only: deck_type, find_material, material_group, charge_group, region_group, unset, word_length
   use equation_of_state, only: eos_type, new_ideal_gas, new_stiffened_gas, new_jwl
   use eos_check, only: check_eos
   use errors, only: fatal, warn, exit_bad_input
@@ -32,9 +32,16 @@ contains
     integer, allocatable :: used(:)
     type(filling_type), allocatable :: filling(:)
     real(wp), allocatable :: density(:), pressure(:)
+    character(word_length), allocatable :: name(:)
+    type(eos_type), allocatable :: eos(:)
     integer :: i
     call list_materials(deck, used)
-    call allocate_flow(flow, mesh, deck%material(used)%name, [(eos_of(deck%material(used(i))), i=1, size(used))])
+    allocate (name(size(used)), eos(size(used)))
+    do i = 1, size(used)
+      name(i) = deck%material(used(i))%name
+      eos(i) = eos_of(deck%material(used(i)))
+    end do
+    call allocate_flow(flow, mesh, name, eos)
     flow%cfl = deck%flow%cfl
     flow%trace_fraction = merge(deck%flow%trace_fraction, 0.0_wp, size(used) > 1)
     flow%gravity = merge(deck%flow%gravity, 0.0_wp, mesh%active)
@@ -265,8 +272,11 @@ contains
           do i = 1, mesh%brick_cells(1)
             center = mesh%brick(mesh%local(b))%origin + ([i, j, k] - 0.5_wp)*mesh%spacing
             call share_of_regions(filling, center, mesh%spacing, share)
-            if (sum(share) < 1 - 1e-6_wp) call fatal('region: the cell at '//str(center(1))//' '//str(center(2))//' '// &
-              str(center(3))//' is not filled by any region', exit_bad_input)
+            if (sum(share) < 1 - 1e-6_wp) then
+              call fatal('region: the cell at '//str(center(1))//' '//str(center(2))//' '//str(center(3))// &
+                ' is not filled by any region', exit_bad_input)
+              return
+            end if
             flow%w(b, flow%current)%a(i, :, j, k) = mixed_cell(flow%layout, flow%eos, filling, share/sum(share), &
               flow%trace_fraction, density, pressure)
           end do

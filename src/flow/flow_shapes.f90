@@ -51,21 +51,47 @@ contains
     end select
   end function distance
 
-  !> Part of a small box that the shape fills, its surface taken as a plane there. width: edge lengths.
+  !> Part of a small box that the shape fills: exact for a box, else with the surface taken as a plane there. width: edge lengths.
   pure real(wp) function part_of_box(self, center, width)
     class(filled_shape), intent(in) :: self
     real(wp), intent(in) :: center(3), width(3)
-    real(wp) :: slope(3), step(3)
-    integer :: d
-    slope = 0
-    do d = 1, 3
-      if (.not. self%active(d)) cycle
-      step = 0
-      step(d) = 0.5_wp*width(d)
-      slope(d) = self%distance(center + step) - self%distance(center - step)
-    end do
-    part_of_box = min(max(0.5_wp - self%distance(center)/max(sum(abs(slope)), tiny(1.0_wp)), 0.0_wp), 1.0_wp)
+    real(wp) :: x(3), axis(3), along, radial, overlap(3)
+    select case (self%kind)
+    case (shape_box)
+      overlap = min(self%upper, center + 0.5_wp*width) - max(self%lower, center - 0.5_wp*width)
+      part_of_box = product(max(overlap, 0.0_wp)/width, self%active)
+    case (shape_sphere)
+      x = merge(center - self%center, 0.0_wp, self%active)
+      part_of_box = behind_plane(norm2(x) - self%radius, x, width)
+    case (shape_cylinder)
+      x = merge(center - self%start, 0.0_wp, self%active)
+      axis = merge(self%end - self%start, 0.0_wp, self%active)
+      if (norm2(axis) > 1e-12_wp*norm2(self%end - self%start)) then
+        along = dot_product(x, axis)/norm2(axis)
+        x = x - along*axis/norm2(axis)
+        radial = behind_plane(norm2(x) - self%radius, x, width)
+        part_of_box = radial*(behind_plane(along - norm2(axis), axis, width) + behind_plane(-along, axis, width) - 1)
+      else
+        part_of_box = behind_plane(norm2(x) - self%radius, x, width)
+      end if
+    case (shape_half_space)
+      part_of_box = behind_plane(self%distance(center), merge(self%normal, 0.0_wp, self%active), width)
+    case default
+      part_of_box = 1
+    end select
   end function part_of_box
+
+  !> Part of a box on the inner side of a plane at the given distance from its centre.
+  pure real(wp) function behind_plane(distance, normal, width)
+    real(wp), intent(in) :: distance, normal(3), width(3)
+    real(wp) :: reach
+    reach = dot_product(abs(normal), width)/max(norm2(normal), tiny(1.0_wp))
+    if (reach > 0) then
+      behind_plane = min(max(0.5_wp - distance/reach, 0.0_wp), 1.0_wp)
+    else
+      behind_plane = merge(1.0_wp, 0.0_wp, distance < 0)
+    end if
+  end function behind_plane
 
   !> Volume of a shape inside a box, by halving what the surface cuts depth times.
   pure recursive function volume_in_box(shape, center, width, depth) result(volume)

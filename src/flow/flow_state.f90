@@ -19,7 +19,7 @@ module flow_state
   character(28), parameter, public :: repair_names(n_repairs) = [character(28) :: 'negative mass set to nil', &
     'volume fraction clipped', 'relaxation by bisection', 'pressure lifted to its floor']
 
-  real(wp), parameter :: no_noise = 1e-200_wp !< eps**2 that does no more than keep 0/0 away
+  real(wp), parameter :: no_noise = 1e-100_wp !< eps**2 that does no more than keep 0/0 away
 
   !> Counts of this rank. Only relaxation by bisection leaves the answer as it should be; the others change it.
   type, public :: repair_log

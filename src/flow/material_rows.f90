@@ -9,7 +9,7 @@ module material_rows
   public :: all_fractions, all_energies, advance, advance_masses, advance_momentum, advance_total_energy, &
     advance_fractions, advance_energies, bound_masses, bound_fractions, bound_energies
 
-  real(wp), parameter, public :: smallest_mass = 1e-150_wp !< of a material per volume: keeps its density positive
+  real(wp), parameter, public :: smallest_mass = 1e-40_wp !< of a material per volume: keeps its density positive
   !> A fraction this far below 0 counts as a repair; nearer ones are the truncation of a trace.
   real(wp), parameter, public :: clip_tolerance = 1e-6_wp
 

@@ -237,7 +237,8 @@ contains
       b2 = b2 + w*f2(q)
       b3 = b3 + w*f3(q)
     end do
-    total = reshape([a1, a2, a3, b1, b2, b3], [3, 2])
+    total(:, 1) = [a1, a2, a3]
+    total(:, 2) = [b1, b2, b3]
   end subroutine face_sums
 
   !> Sum of each node's function over the particles of one cell.

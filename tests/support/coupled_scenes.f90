@@ -1,7 +1,7 @@
 !> Small scenes from deck texts, made and advanced as the program does.
 module coupled_scenes
   use blocks, only: block
-  use deck, only: read_deck_string
+  use deck, only: message_length, read_deck_string
   use kinds, only: wp
   use log, only: be_quiet
   use main_loop, only: advance_scene
@@ -20,7 +20,7 @@ contains
     character(*), intent(in) :: text
     type(scene_type), intent(out) :: scene
     logical, intent(out) :: ok
-    character(:), allocatable :: errors(:)
+    character(message_length), allocatable :: errors(:)
     call be_quiet()
     call read_deck_string(text, scene%deck, errors)
     ok = size(errors) == 0

@@ -75,7 +75,7 @@ def close_gaps(layers, radius):
     """Fills the narrow gaps that open between the particles of a stretched body (not wider than about a particle) with the mean of
     what lies around them; wider ones stay open."""
     seen = np.isfinite(layers[0])
-    closed = ~window_any(~window_any(seen, radius), radius)
+    closed = ~window_any(~window_any(seen, radius), radius, outside=True)
     gaps = closed & ~seen
     if not gaps.any():
         return
@@ -83,9 +83,9 @@ def close_gaps(layers, radius):
         layer[gaps] = blurred(layer, radius, everywhere=True)[gaps]
 
 
-def window_any(mask, radius):
-    """True where the mask is true anywhere within the radius."""
-    padded = np.pad(mask, radius)
+def window_any(mask, radius, outside=False):
+    """True where the mask is true anywhere within the radius; outside: what it is beyond the border."""
+    padded = np.pad(mask, radius, constant_values=outside)
     wide = np.zeros((padded.shape[0], mask.shape[1]), dtype=bool)
     for shift in range(2 * radius + 1):
         wide |= padded[:, shift:shift + mask.shape[1]]

@@ -9,7 +9,7 @@ from curve_pictures import curves_picture, read_table
 from flow_pictures import draw_slice, lines_picture, plane_axes, slice_picture
 from snapshot_files import AXES, SnapshotError, open_snapshot, place_text
 from solid_pictures import default_bounds, draw_section, draw_view, side_name, view_frame
-from style import colour_bar, colour_range, readable, save, time_text, titled, words, plt
+from style import colour_bar, colour_range, readable, save, time_text, words, plt
 
 
 class Run:
