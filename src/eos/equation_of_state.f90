@@ -9,6 +9,7 @@ module equation_of_state
   private
   public :: new_ideal_gas, new_stiffened_gas, new_jwl
 
+  integer, parameter, public :: max_materials = 8 !< in a cell
   integer, parameter, public :: is_ideal_gas = 1, is_stiffened_gas = 2, is_jwl = 3
 
   type, public :: eos_type

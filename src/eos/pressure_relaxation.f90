@@ -5,7 +5,7 @@
 !> All is written in deviations from the fractions and from a start pressure: what is in equilibrium there keeps every bit.
 module pressure_relaxation
   use kinds, only: wp
-  use equation_of_state, only: eos_type
+  use equation_of_state, only: eos_type, max_materials
   use relaxation_fallback, only: relax_cell
   implicit none
   private
@@ -60,7 +60,7 @@ contains
     real(wp), intent(inout) :: a_start(ld, n_materials), step(ld, n_materials), response(ld, n_materials)
     real(wp), intent(inout) :: f(ld, n_materials), r_df(ld, n_materials), work(ld, 4)
     integer, parameter :: surplus = 1, stiffness = 2, moving = 3, volume = 4
-    real(wp) :: lowest, cell_a(n_materials), cell_p
+    real(wp) :: lowest, unconverged, cell_m(max_materials), cell_e(max_materials), cell_a(max_materials), cell_p
     integer :: iteration, k, i
     lowest = 0
     if (all(eos%is_gas)) lowest = -minval(eos%gas%p_infinity)
@@ -87,21 +87,23 @@ contains
         if (.not. eos(k)%is_gas) call move_fraction(n, eos(k)%grueneisen, a_start(:, k), step(:, k), response(:, k), &
           work(:, surplus), work(:, moving), a(:, k))
       end do
-      call stop_converged(n, lowest, work(:, surplus), p, work(:, moving))
-      if (.not. any(work(:n, moving) > 0)) exit
+      call stop_converged(n, lowest, work(:, surplus), p, work(:, moving), unconverged)
+      if (.not. unconverged > 0) exit
     end do
     do k = 1, n_materials
       if (eos(k)%is_gas) call gas_terms(n, eos(k), e(:, k), p_start, a_start(:, k), p, a(:, k), work(:, surplus), &
         work(:, stiffness))
     end do
     n_fallback = 0
-    if (.not. any(work(:n, moving) > 0)) return
+    if (.not. unconverged > 0) return
     do i = 1, n
       if (.not. work(i, moving) > 0) cycle
       n_fallback = n_fallback + 1
-      cell_a = a_start(i, :)
-      call relax_cell(eos, m(i, :), e(i, :), cell_a, cell_p)
-      a(i, :) = cell_a
+      cell_m(:n_materials) = m(i, :)
+      cell_e(:n_materials) = e(i, :)
+      cell_a(:n_materials) = a_start(i, :)
+      call relax_cell(eos, cell_m(:n_materials), cell_e(:n_materials), cell_a(:n_materials), cell_p)
+      a(i, :) = cell_a(:n_materials)
       p(i) = cell_p
     end do
   end subroutine relax_materials
@@ -217,15 +219,18 @@ contains
     end do
   end subroutine move_fraction
 
-  !> A cell stops when its pressure and all its fractions made a small step.
-  pure subroutine stop_converged(n, lowest, rise, p, moving)
+  !> A cell stops when its pressure and all its fractions made a small step. unconverged: 1 if a cell goes on, else 0.
+  pure subroutine stop_converged(n, lowest, rise, p, moving, unconverged)
     integer, intent(in) :: n
     real(wp), intent(in) :: lowest, rise(n), p(n)
     real(wp), intent(inout) :: moving(n)
+    real(wp), intent(out) :: unconverged
     integer :: i
-    !$omp simd
+    unconverged = 0
+    !$omp simd reduction(max:unconverged)
     do i = 1, n
       moving(i) = merge(0.0_wp, min(moving(i), 1.0_wp), moving(i) < 2 .and. abs(rise(i)) <= step_tolerance*(p(i) - lowest))
+      unconverged = max(unconverged, moving(i))
     end do
   end subroutine stop_converged
 

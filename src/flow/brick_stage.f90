@@ -34,14 +34,14 @@ module brick_stage
     integer :: bad = 0 !< cells whose pressure or sound speed is no positive number
   end type brick_report
 
-  !> Work space, the same for all bricks of a size; (row, variable, ...).
+  !> Work space, the same for all bricks of a size; (along the row, variable, ...).
   type, public :: stage_scratch
     integer :: ld = 0
     real(wp), allocatable :: low(:, :), high(:, :) !< face values of a row of cells
     real(wp), allocatable :: y_high(:, :, :), z_high(:, :, :, :) !< upper face values kept for the next row and plane
     real(wp), allocatable :: flux_x(:, :), flux_y(:, :, :), flux_z(:, :, :, :)
     real(wp), allocatable :: d(:, :) !< what the fluxes take from each cell in a whole step
-    real(wp), allocatable :: wave(:, :), partial(:, :), fractions(:, :)
+    real(wp), allocatable :: wave(:, :), partial(:, :), fractions(:, :), force(:)
     type(row_scratch) :: row
   end type stage_scratch
 
@@ -56,22 +56,24 @@ contains
     if (s%ld == ld .and. allocated(s%z_high)) then
       if (size(s%z_high, 3) == n(2)) return
     end if
-    if (s%ld > 0) deallocate (s%low, s%high, s%y_high, s%z_high, s%flux_x, s%flux_y, s%flux_z, s%d, s%wave, s%partial, &
-      s%fractions)
-    if (s%ld > 0) deallocate (s%row%m, s%row%a, s%row%e, s%row%a_from, s%row%e_from, s%row%a_start, s%row%e_start, s%row%f, &
-      s%row%r_df, s%row%conserved, s%row%relaxation, s%row%step, s%row%response, s%row%before)
+    call clear_scratch(s)
     s%ld = ld
     nm = layout%n_materials
     nr = layout%n_reconstructed
     nf = layout%n_fluxes
     ! ones, so that what lies beyond the cells of a row never traps
     allocate (s%low(ld, nr), s%high(ld, nr), s%y_high(ld, nr, 0:1), s%z_high(ld, nr, n(2), 0:1), s%flux_x(ld, nf), &
-      s%flux_y(ld, nf, 0:1), s%flux_z(ld, nf, n(2), 0:1), s%d(ld, nf), s%wave(ld, 6), s%partial(ld, nm), &
-      s%fractions(ld, nm), source=1.0_wp)
+      s%flux_y(ld, nf, 0:1), s%flux_z(ld, nf, n(2), 0:1), s%d(ld, nf), s%wave(ld, 7), s%partial(ld, nm), &
+      s%fractions(ld, nm), s%force(ld), source=1.0_wp)
     allocate (s%row%m(ld, nm), s%row%a(ld, nm), s%row%e(ld, nm), s%row%a_from(ld, nm), s%row%e_from(ld, nm), &
       s%row%a_start(ld, nm), s%row%e_start(ld, nm), s%row%f(ld, nm), s%row%r_df(ld, nm), s%row%conserved(ld, 7), &
       s%row%relaxation(ld, 8), s%row%step(ld, nm), s%row%response(ld, nm), s%row%before(ld, nm), source=1.0_wp)
   end subroutine prepare_scratch
+
+  subroutine clear_scratch(s)
+    type(stage_scratch), intent(out) :: s
+    s%ld = 0
+  end subroutine clear_scratch
 
   !> Computes the new state of a brick. from: state that the fluxes belong to, ghosts filled; start: state at the start of the
   !> step; n: cells; g: ghost layers; ld: length of a row; eps2: of the limiter, by variable. booked(quantity, face): what
@@ -100,6 +102,7 @@ contains
     x_faces = 4*((n(1) + 4)/4)
     rate = stage%dt/stage%spacing
     weight = stage%weight*stage%dt*product(stage%spacing)/stage%spacing
+    ! two of each: which one is old changes from row to row and from plane to plane
     cell_z = 1
     face_z = 0
     if (stage%active(3)) then
@@ -188,10 +191,10 @@ contains
       real(wp), intent(inout) :: flux(ld, *)
       integer, parameter :: turn(3, 3) = reshape([1, 2, 3, 2, 3, 1, 3, 1, 2], [3, 3])
       integer :: normal(3), p, i
-      real(wp) :: force(ld)
       normal = layout%velocity_row - 1 + turn(:, direction)
       if (layout%n_materials == 1) then
-        call hllc_single(n_faces, ld, layout, eos(1), normal, left, from(1 - back, c, jl, kl), right, from(1, c, jr, kr), flux)
+        call hllc_single(n_faces, ld, layout, eos(1), normal, left, from(1 - back, c, jl, kl), right, from(1, c, jr, kr), flux, &
+          s%wave)
       else
         call hllc_materials(n_faces, ld, layout%n_materials, layout, eos, normal, left, from(1 - back, c, jl, kl), &
           right, from(1, c, jr, kr), flux, s%wave, s%partial, s%fractions)
@@ -199,12 +202,12 @@ contains
       if (.not. present(open)) return
       p = layout%pressure_row
       call close_faces(n_faces, ld, layout%n_fluxes, layout%momentum_flux + direction - 1, open(1 - back, 1, jl, kl), &
-        from(1 - back, p, jl, kl), open(1, 1, jr, kr), from(1, p, jr, kr), flux, force)
+        from(1 - back, p, jl, kl), open(1, 1, jr, kr), from(1, p, jr, kr), flux, s%force)
       do i = 1, n_faces
         if (open(i - back, 1, jl, kl) > 0) then
-          impulse(i - back, direction, jl, kl) = impulse(i - back, direction, jl, kl) + weight(direction)*force(i)
+          impulse(i - back, direction, jl, kl) = impulse(i - back, direction, jl, kl) + weight(direction)*s%force(i)
         else
-          impulse(i, direction, jr, kr) = impulse(i, direction, jr, kr) + weight(direction)*force(i)
+          impulse(i, direction, jr, kr) = impulse(i, direction, jr, kr) + weight(direction)*s%force(i)
         end if
       end do
     end subroutine flux_across

@@ -39,33 +39,41 @@ contains
         case default
           from = last
         end select
-        call copy_layer(w, d, from, last + outward*layer)
-        if (kind == face_symmetry) call turn_velocity(w, d, last + outward*layer)
+        call copy_layer(w, d, from, last + outward*layer, merge(-1.0_wp, 1.0_wp, kind == face_symmetry))
         if (kind == face_inflow) call set_layer(w, d, last + outward*layer)
       end do
     end subroutine fill_face
 
-    subroutine copy_layer(w, d, from, to)
+    !> Copies a layer of cells, normal velocity times sign.
+    subroutine copy_layer(w, d, from, to, sign)
       real(wp), allocatable, intent(inout) :: w(:, :, :, :)
       integer, intent(in) :: d, from, to
-      select case (d)
-      case (1); w(to, :, :, :) = w(from, :, :, :)
-      case (2); w(:, :, to, :) = w(:, :, from, :)
-      case (3); w(:, :, :, to) = w(:, :, :, from)
-      end select
+      real(wp), intent(in) :: sign
+      real(wp) :: factor
+      integer :: v, j, k, source(3), target(3)
+      do k = merge(to, lbound(w, 4), d == 3), merge(to, ubound(w, 4), d == 3)
+        do j = merge(to, lbound(w, 3), d == 2), merge(to, ubound(w, 3), d == 2)
+          target = [to, j, k]
+          source = target
+          source(d) = from
+          do v = 1, flow%layout%n_rows
+            factor = merge(sign, 1.0_wp, v == flow%layout%velocity_row + d - 1)
+            if (d == 1) then
+              w(to, v, j, k) = factor*w(from, v, j, k)
+            else
+              call copy_row(size(w, 1), factor, w(lbound(w, 1), v, source(2), source(3)), w(lbound(w, 1), v, j, k))
+            end if
+          end do
+        end do
+      end do
     end subroutine copy_layer
 
-    subroutine turn_velocity(w, d, layer)
-      real(wp), allocatable, intent(inout) :: w(:, :, :, :)
-      integer, intent(in) :: d, layer
-      integer :: u
-      u = flow%layout%velocity(d)
-      select case (d)
-      case (1); w(layer, u, :, :) = -w(layer, u, :, :)
-      case (2); w(:, u, layer, :) = -w(:, u, layer, :)
-      case (3); w(:, u, :, layer) = -w(:, u, :, layer)
-      end select
-    end subroutine turn_velocity
+    pure subroutine copy_row(n, factor, from, to)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: factor, from(n)
+      real(wp), intent(inout) :: to(n)
+      to = factor*from
+    end subroutine copy_row
 
     subroutine set_layer(w, d, layer)
       real(wp), allocatable, intent(inout) :: w(:, :, :, :)

@@ -6,12 +6,10 @@
 !> The energies (per volume of the cell) are stored only of materials whose energy is not a linear function of the pressure with
 !> constant coefficients, that is of all but gases: that spares their exponentials on the faces.
 module flow_layout
-  use equation_of_state, only: eos_type
+  use equation_of_state, only: eos_type, max_materials
   implicit none
   private
-  public :: new_layout
-
-  integer, parameter, public :: max_materials = 8
+  public :: new_layout, max_materials
 
   type, public :: layout_type
     integer :: n_materials = 1

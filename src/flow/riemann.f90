@@ -14,18 +14,19 @@ module riemann
 contains
 
   !> Fluxes of one material. left, right: reconstructed rows on both sides of the faces; c_left, c_right: sound speeds of the cells
-  !> on both sides; normal: rows of the velocities normal to the face and along it; flux: rows as in flow_layout.
-  pure subroutine hllc_single(n, ld, layout, eos, normal, left, c_left, right, c_right, flux)
+  !> on both sides; normal: rows of the velocities normal to the face and along it; flux: rows as in flow_layout; wave: scratch.
+  pure subroutine hllc_single(n, ld, layout, eos, normal, left, c_left, right, c_right, flux, wave)
     integer, intent(in) :: n, ld, normal(3)
     type(layout_type), intent(in) :: layout
     type(eos_type), intent(in) :: eos
     real(wp), intent(in) :: left(ld, *), c_left(n), right(ld, *), c_right(n)
-    real(wp), intent(out) :: flux(ld, 5)
+    real(wp), intent(inout) :: flux(ld, 5), wave(ld, 5)
     if (eos%is_gas) then
       call gas_fluxes(n, ld, normal(1), normal(2), normal(3), eos%over_g, eos%rest_energy, &
         left, c_left, right, c_right, flux)
     else
-      call stored_energy_fluxes(n, ld, normal(1), normal(2), normal(3), layout%energy(1), left, c_left, right, c_right, flux)
+      call stored_energy_fluxes(n, ld, normal(1), normal(2), normal(3), layout%energy(1), left, c_left, right, c_right, &
+        flux, wave)
     end if
   end subroutine hllc_single
 
@@ -76,11 +77,10 @@ contains
   end subroutine gas_fluxes
 
   !> As gas_fluxes, with the energy per volume taken from its own row e.
-  pure subroutine stored_energy_fluxes(n, ld, u, v, w, e, left, c_left, right, c_right, flux)
+  pure subroutine stored_energy_fluxes(n, ld, u, v, w, e, left, c_left, right, c_right, flux, wave)
     integer, intent(in) :: n, ld, u, v, w, e
     real(wp), intent(in) :: left(ld, *), c_left(n), right(ld, *), c_right(n)
-    real(wp), intent(out) :: flux(ld, 5)
-    real(wp) :: wave(ld, 5)
+    real(wp), intent(inout) :: flux(ld, 5), wave(ld, 5)
     logical :: from_left
     integer :: i
     call contact_fluxes(n, ld, 1, u, v, w, 5, u, v, w, 5, left, c_left, right, c_right, flux, wave)
@@ -101,7 +101,7 @@ contains
     type(layout_type), intent(in) :: layout
     type(eos_type), intent(in) :: eos(n_materials)
     real(wp), intent(in) :: left(ld, *), c_left(n), right(ld, *), c_right(n)
-    real(wp), intent(inout) :: flux(ld, *), wave(ld, 6), partial(ld, n_materials), fractions(ld, n_materials)
+    real(wp), intent(inout) :: flux(ld, *), wave(ld, 7), partial(ld, n_materials), fractions(ld, n_materials)
     integer :: first, u, e, k
     first = layout%momentum_flux - layout%velocity_row
     u = layout%face_velocity_flux
@@ -113,9 +113,9 @@ contains
       call share_between_two(n, ld, wave, left, left(1, layout%first_fraction_row), right, right(1, layout%first_fraction_row), &
         fractions, flux, flux(1, layout%first_fraction_flux))
     else
-      call share_mass(n, ld, n_materials, wave, left, right, partial, flux)
+      call share_mass(n, ld, n_materials, wave, left, right, partial, wave(1, 7), flux)
       call upwind_fractions(n, ld, n_materials, wave(1, 1), left(1, layout%first_fraction_row), &
-        right(1, layout%first_fraction_row), fractions)
+        right(1, layout%first_fraction_row), wave(1, 7), fractions)
       do k = 1, n_materials
         call ride_contact(n, flux(1, u), fractions(1, k), flux(1, layout%first_fraction_flux + k - 1))
       end do
@@ -230,11 +230,10 @@ contains
     end do
   end subroutine share_between_two
 
-  pure subroutine share_mass(n, ld, n_materials, wave, left, right, partial, flux)
+  pure subroutine share_mass(n, ld, n_materials, wave, left, right, partial, total, flux)
     integer, intent(in) :: n, ld, n_materials
     real(wp), intent(in) :: wave(ld, 6), left(ld, n_materials), right(ld, n_materials)
-    real(wp), intent(inout) :: partial(ld, n_materials), flux(ld, n_materials)
-    real(wp) :: total(ld)
+    real(wp), intent(inout) :: partial(ld, n_materials), total(n), flux(ld, n_materials)
     integer :: i, k
     total(:n) = 0
     do k = 1, n_materials
@@ -253,11 +252,10 @@ contains
   end subroutine share_mass
 
   !> Fractions of three or more materials on the upwind side, scaled to fill the face: their limiters differ.
-  pure subroutine upwind_fractions(n, ld, n_materials, push, left, right, fractions)
+  pure subroutine upwind_fractions(n, ld, n_materials, push, left, right, total, fractions)
     integer, intent(in) :: n, ld, n_materials
     real(wp), intent(in) :: push(n), left(ld, n_materials), right(ld, n_materials)
-    real(wp), intent(inout) :: fractions(ld, n_materials)
-    real(wp) :: total(ld)
+    real(wp), intent(inout) :: total(n), fractions(ld, n_materials)
     integer :: i, k
     total(:n) = 0
     do k = 1, n_materials

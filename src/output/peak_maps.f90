@@ -58,6 +58,7 @@ contains
       if (b <= size(open)) all_open = .not. allocated(open(b)%a)
       do k = 1, mesh%brick_cells(3)
         do j = 1, mesh%brick_cells(2)
+          if (.not. any(state(b)%a(1:n, column, j, k) > peaks%ambient)) cycle ! nothing can change: spares the maps' memory
           if (all_open) then
             call update_row(n, state(b)%a(1:n, column, j, k), ones, peaks%ambient, peaks%threshold, time, duration, &
               peaks%map(b)%a(:, 1, j, k), peaks%map(b)%a(:, 2, j, k), peaks%map(b)%a(:, 3, j, k))
@@ -74,14 +75,17 @@ contains
     integer, intent(in) :: n
     real(wp), intent(in) :: pressure(n), open(n), ambient, threshold, time, duration
     real(wp), intent(inout) :: peak(n), impulse(n), arrival(n)
-    real(wp) :: over
+    real(wp) :: over, highest, arrived
     integer :: i
-    !$omp simd private(over)
+    !$omp simd private(over, highest, arrived)
     do i = 1, n
       over = (pressure(i) - ambient)*open(i)
-      peak(i) = max(peak(i), over)
-      impulse(i) = impulse(i) + duration*max(over, 0.0_wp)
-      arrival(i) = merge(time, arrival(i), over > threshold .and. arrival(i) < 0)
+      highest = peak(i)
+      peak(i) = merge(over, highest, over > highest)
+      impulse(i) = impulse(i) + duration*merge(over, 0.0_wp, over > 0)
+      arrived = arrival(i)
+      arrived = merge(arrived, merge(time, arrived, over > threshold), arrived >= 0)
+      arrival(i) = arrived
     end do
   end subroutine update_row
 

@@ -3,7 +3,7 @@
 !> The file knows nothing of ranks: fields and particle tables stand brick after brick in the order of the mesh.
 !> All procedures are to be called by all ranks. Errors are fatal: a run never starts anew in place of going on.
 module restart_files
-  use errors, only: fatal
+  use errors, only: fatal, exit_bad_input
   use file_system, only: file_exists, publish_file, remove_file
   use hdf5_attributes, only: get_attribute, put_attribute
   use hdf5_files, only: hdf5_file, close_file, create_file, create_group, has_object, open_file
@@ -108,7 +108,8 @@ contains
     character(:), allocatable :: name
     integer :: serial
     call find_newest(folder, name, serial)
-    if (len(name) == 0) call fatal('there is no readable restart file ('//slot_name(folder, 1)//' or '//slot_name(folder, 2)//')')
+    if (len(name) == 0) call fatal('there is no readable restart file ('//slot_name(folder, 1)// &
+    ' or '//slot_name(folder, 2)//')', exit_bad_input)
   end function newest_restart
 
   !> Removes the restart files of an earlier run from a folder in which a run starts anew.
