@@ -12,6 +12,7 @@ module pressure_relaxation
   public :: relax_two_gases, relax_materials, relax_cell
 
   integer, parameter :: max_iterations = 12
+  integer, parameter :: surplus = 1, stiffness = 2, moving = 3, volume = 4 !< columns of the work space
   real(wp), parameter :: step_tolerance = 1e-6_wp !< of the last Newton step, relative; the error left is about its square
 
 contains
@@ -59,7 +60,6 @@ contains
     integer, intent(out) :: n_fallback
     real(wp), intent(inout) :: a_start(ld, n_materials), step(ld, n_materials), response(ld, n_materials)
     real(wp), intent(inout) :: f(ld, n_materials), r_df(ld, n_materials), work(ld, 4)
-    integer, parameter :: surplus = 1, stiffness = 2, moving = 3, volume = 4
     real(wp) :: lowest, unconverged, cell_m(max_materials), cell_e(max_materials), cell_a(max_materials), cell_p
     integer :: iteration, k, i
     lowest = 0
@@ -72,22 +72,7 @@ contains
       end do
       if (iteration == 1) call guess_pressure(n, ld, n_materials, eos, a, e, f, p_start, work(:, surplus), &
         work(:, stiffness), p)
-      work(:n, surplus) = 0
-      work(:n, stiffness) = 0
-      do k = 1, n_materials
-        if (eos(k)%is_gas) then
-          call gas_terms(n, eos(k), e(:, k), p_start, a_start(:, k), p, a(:, k), work(:, surplus), work(:, stiffness))
-        else
-          call newton_terms(n, eos(k)%grueneisen, e(:, k), a_start(:, k), p, f(:, k), r_df(:, k), a(:, k), &
-            step(:, k), response(:, k), work(:, surplus), work(:, stiffness))
-        end if
-      end do
-      call move_pressure(n, lowest, work(:, moving), work(:, surplus), work(:, stiffness), p)
-      do k = 1, n_materials
-        if (.not. eos(k)%is_gas) call move_fraction(n, eos(k)%grueneisen, a_start(:, k), step(:, k), response(:, k), &
-          work(:, surplus), work(:, moving), a(:, k))
-      end do
-      call stop_converged(n, lowest, work(:, surplus), p, work(:, moving), unconverged)
+      call step_all(n, ld, n_materials, lowest, eos, e, a_start, p_start, f, r_df, a, p, step, response, work, unconverged)
       if (.not. unconverged > 0) exit
     end do
     do k = 1, n_materials
@@ -107,6 +92,34 @@ contains
       p(i) = cell_p
     end do
   end subroutine relax_materials
+
+  !> One Newton step of all cells and materials.
+  pure subroutine step_all(n, ld, n_materials, lowest, eos, e, a_start, p_start, f, r_df, a, p, step, response, work, unconverged)
+    integer, intent(in) :: n, ld, n_materials
+    type(eos_type), intent(in) :: eos(n_materials)
+    real(wp), intent(in) :: lowest, p_start(ld)
+    real(wp), intent(in), dimension(ld, n_materials) :: e, a_start, f, r_df
+    real(wp), intent(inout), dimension(ld, n_materials) :: a, step, response
+    real(wp), intent(inout) :: p(ld), work(ld, 4)
+    real(wp), intent(out) :: unconverged
+    integer :: k
+    work(:n, surplus) = 0
+    work(:n, stiffness) = 0
+    do k = 1, n_materials
+      if (eos(k)%is_gas) then
+        call gas_terms(n, eos(k), e(:, k), p_start, a_start(:, k), p, a(:, k), work(:, surplus), work(:, stiffness))
+      else
+        call newton_terms(n, eos(k)%grueneisen, e(:, k), a_start(:, k), p, f(:, k), r_df(:, k), a(:, k), &
+          step(:, k), response(:, k), work(:, surplus), work(:, stiffness))
+      end if
+    end do
+    call move_pressure(n, lowest, work(:, moving), work(:, surplus), work(:, stiffness), p)
+    do k = 1, n_materials
+      if (.not. eos(k)%is_gas) call move_fraction(n, eos(k)%grueneisen, a_start(:, k), step(:, k), response(:, k), &
+        work(:, surplus), work(:, moving), a(:, k))
+    end do
+    call stop_converged(n, lowest, work(:, surplus), p, work(:, moving), unconverged)
+  end subroutine step_all
 
   !> Pressure that the energies have together before relaxation: near the relaxed one even for unequal materials.
   pure subroutine guess_pressure(n, ld, n_materials, eos, a, e, f, p_start, surplus, capacity, p)

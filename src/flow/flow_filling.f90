@@ -66,12 +66,12 @@ contains
     end do
   end subroutine add_shares
 
-  !> How often to halve a cell of size h that the surface of a shape of size r cuts: to a twentieth of the shape, 1/16 at least.
+  !> How often to halve a cell of size h that the surface of a shape of size r cuts: to a fortieth of the shape, 1/16 at least.
   pure integer function halvings_for(r, h, dimensions)
     real(wp), intent(in) :: r, h
     integer, intent(in) :: dimensions
     integer, parameter :: least(3) = [8, 5, 4]
-    halvings_for = min(max(least(dimensions), ceiling(log(20*h/r)/log(2.0_wp))), 8)
+    halvings_for = min(max(least(dimensions), ceiling(log(40*h/r)/log(2.0_wp))), 8)
   end function halvings_for
 
   !> State of a cell from the shares of its fillings: masses, momentum and total energy are kept; different pressures are relaxed.

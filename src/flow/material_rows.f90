@@ -158,21 +158,22 @@ contains
     end do
   end subroutine advance_energies
 
-  !> Keeps masses positive and sums them to the density of the mixture. n_negative: cells that had a negative mass.
+  !> Keeps masses positive and sums them to the density of the mixture. n_negative: masses that were negative.
   pure subroutine bound_masses(n, ld, n_materials, m, density, n_negative)
     integer, intent(in) :: n, ld, n_materials
     real(wp), intent(inout) :: m(ld, n_materials), density(n)
     integer, intent(out) :: n_negative
-    real(wp) :: lowest
+    real(wp) :: negative
     integer :: i, k
-    lowest = 0
+    negative = 0
     do k = 1, n_materials
-      !$omp simd reduction(min:lowest)
+      !$omp simd reduction(+:negative)
       do i = 1, n
-        lowest = min(lowest, m(i, k))
+        negative = negative + merge(1.0_wp, 0.0_wp, m(i, k) < 0)
         m(i, k) = max(m(i, k), smallest_mass)
       end do
     end do
+    n_negative = nint(negative)
     !$omp simd
     do i = 1, n
       density(i) = m(i, 1) + m(i, 2)
@@ -180,43 +181,38 @@ contains
     do k = 3, n_materials
       density(:n) = density(:n) + m(:n, k)
     end do
-    n_negative = 0
-    if (lowest < 0) n_negative = count(m(:n, :) <= smallest_mass)
   end subroutine bound_masses
 
-  !> Keeps each fraction at the trace or above and their sum at 1. n_clipped: fractions that were below 0 by more than the tolerance.
+  !> Keeps each fraction at the trace or above and their sum at 1.
+  !> n_clipped: cells with a fraction below 0 by more than the tolerance.
   pure subroutine bound_fractions(n, ld, n_materials, trace, a, n_clipped)
     integer, intent(in) :: n, ld, n_materials
     real(wp), intent(in) :: trace
     real(wp), intent(inout) :: a(ld, n_materials)
     integer, intent(out) :: n_clipped
     real(wp), parameter :: round_off = 1e-14_wp
-    real(wp) :: lowest, excess, scale
-    integer :: i, k
-    lowest = 0
-    n_clipped = 0
+    real(wp) :: clipped, excess, scale
+    integer :: i
+    clipped = 0
     if (n_materials == 2) then
-      !$omp simd reduction(min:lowest)
+      !$omp simd reduction(+:clipped)
       do i = 1, n
-        lowest = min(lowest, a(i, 1), a(i, 2))
+        clipped = clipped + merge(1.0_wp, 0.0_wp, min(a(i, 1), a(i, 2)) < -clip_tolerance)
         a(i, 1) = min(max(a(i, 1), trace), 1 - trace)
         a(i, 2) = 1 - a(i, 1)
       end do
-      if (lowest < -clip_tolerance) n_clipped = 1
-      return
+    else
+      do i = 1, n
+        excess = sum(a(i, :)) - 1
+        if (all(a(i, :) >= trace) .and. abs(excess) < round_off) cycle
+        if (any(a(i, :) < -clip_tolerance)) clipped = clipped + 1
+        a(i, :) = max(a(i, :), trace)
+        excess = sum(a(i, :)) - 1
+        scale = 1 - excess/sum(a(i, :) - trace)
+        a(i, :) = trace + (a(i, :) - trace)*scale
+      end do
     end if
-    do k = 1, n_materials
-      lowest = min(lowest, minval(a(:n, k)))
-    end do
-    if (lowest < -clip_tolerance) n_clipped = 1
-    do i = 1, n
-      excess = sum(a(i, :)) - 1
-      if (all(a(i, :) >= trace) .and. abs(excess) < round_off) cycle
-      a(i, :) = max(a(i, :), trace)
-      excess = sum(a(i, :)) - 1
-      scale = 1 - excess/sum(a(i, :) - trace)
-      a(i, :) = trace + (a(i, :) - trace)*scale
-    end do
+    n_clipped = nint(clipped)
   end subroutine bound_fractions
 
   !> Keeps the own pressure of each gas above its lowest by floor_pressure, before relaxation.

@@ -29,6 +29,7 @@ module halo
   end type halo_type
 
   integer, parameter :: tag = 11
+  integer, parameter :: thin = 4 !< cells along x that are copied one by one
 
 contains
 
@@ -116,15 +117,20 @@ contains
     integer, intent(in) :: n_var
     logical, intent(in), optional :: only_faces
     logical :: faces
-    integer :: t, first(3), last(3)
+    integer :: t, first(3), last(3), from(3), to(3)
     faces = .false.
     if (present(only_faces)) faces = only_faces
-    call transfer_slabs(mesh, halo, blocks, n_var, cells_to_give, faces)
+    call transfer_slabs(mesh, halo, blocks, n_var, cells_to_give, faces, .false.)
     do t = 1, size(halo%incoming)
       associate (in => halo%incoming(t))
         if (skipped(mesh, in%direction, faces)) cycle
         call ghosts_to_fill(mesh, in%direction, first, last)
-        call unpack_slab(blocks(in%here), first, last, n_var, halo%received(halo%position(t):))
+        if (in%there > 0) then
+          call cells_to_give(mesh, in%direction, from, to)
+          call copy_slab(blocks(in%there)%a, from, to, n_var, first, blocks(in%here)%a)
+        else
+          call unpack_slab(blocks(in%here), first, last, n_var, halo%received(halo%position(t):))
+        end if
       end associate
     end do
   end subroutine fill
@@ -137,7 +143,7 @@ contains
     type(block), intent(inout) :: blocks(:)
     integer, intent(in) :: n_var
     integer :: b, i, j, k, slab(-1:1, -1:1, -1:1)
-    call transfer_slabs(mesh, halo, blocks, n_var, nodes_to_give, .false.)
+    call transfer_slabs(mesh, halo, blocks, n_var, nodes_to_give, .false., .true.)
     do b = 1, mesh%n_local
       if (.not. allocated(blocks(b)%a)) cycle
       slab = 0
@@ -197,13 +203,14 @@ contains
     total = total + buffer(first(1):last(1), :, first(2):last(2), first(3):last(3))
   end subroutine add_part
 
-  !> Brings every incoming slab into halo%received: by copy from this rank's bricks, by one message from each other rank.
-  subroutine transfer_slabs(mesh, halo, blocks, n_var, to_give, faces)
+  !> Brings incoming slabs into halo%received: by one message from each other rank and, if copies are wanted too, from this rank's
+  !> bricks.
+  subroutine transfer_slabs(mesh, halo, blocks, n_var, to_give, faces, copies)
     type(mesh_type), intent(in) :: mesh
     type(halo_type), intent(inout) :: halo
     type(block), intent(in) :: blocks(:)
     integer, intent(in) :: n_var
-    logical, intent(in) :: faces
+    logical, intent(in) :: faces, copies
     interface
       pure subroutine to_give(mesh, direction, first, last)
         import :: mesh_type
@@ -243,7 +250,8 @@ contains
     call send_slabs(mesh, halo, blocks, n_var, to_give, faces, request, n_requests)
     do t = 1, size(halo%incoming)
       associate (in => halo%incoming(t))
-        if (in%there == 0 .or. skipped(mesh, in%direction, faces)) cycle
+        if (in%there == 0 .or. .not. copies) cycle
+        if (skipped(mesh, in%direction, faces)) cycle
         call to_give(mesh, in%direction, first, last)
         call pack_slab(blocks(in%there), first, last, n_var, halo%received(halo%position(t):))
       end associate
@@ -334,12 +342,38 @@ contains
     last = merge(0, mesh%brick_cells, direction > 0)
   end subroutine nodes_to_give
 
+  !> Copies a box of one block to a box of the same shape in another. Thin boxes go cell by cell: a call to copy two numbers costs
+  !> more than the copy.
+  subroutine copy_slab(giver, from, to, n_var, first, receiver)
+    real(wp), allocatable, intent(in) :: giver(:, :, :, :)
+    integer, intent(in) :: from(3), to(3), n_var, first(3)
+    real(wp), allocatable, intent(inout) :: receiver(:, :, :, :)
+    integer :: i, j, k, v, n, d(3)
+    n = to(1) - from(1) + 1
+    d = first - from
+    do k = from(3), to(3)
+      do j = from(2), to(2)
+        if (n <= thin) then
+          do i = from(1), to(1)
+            do v = 1, n_var
+              receiver(i + d(1), v, j + d(2), k + d(3)) = giver(i, v, j, k)
+            end do
+          end do
+        else
+          do v = 1, n_var
+            receiver(first(1):first(1) + n - 1, v, j + d(2), k + d(3)) = giver(from(1):to(1), v, j, k)
+          end do
+        end if
+      end do
+    end do
+  end subroutine copy_slab
+
   !> Copies a box of a block to a buffer; an unallocated block gives zeros.
   subroutine pack_slab(b, first, last, n_var, buffer)
     type(block), intent(in) :: b
     integer, intent(in) :: first(3), last(3), n_var
     real(wp), intent(inout) :: buffer(:)
-    integer :: j, k, v, n, at
+    integer :: i, j, k, v, n, at
     n = last(1) - first(1) + 1
     if (.not. allocated(b%a)) then
       buffer(:n_var*product(last - first + 1)) = 0
@@ -348,10 +382,19 @@ contains
     at = 0
     do k = first(3), last(3)
       do j = first(2), last(2)
-        do v = 1, n_var
-          buffer(at + 1:at + n) = b%a(first(1):last(1), v, j, k)
-          at = at + n
-        end do
+        if (n <= thin) then
+          do i = 1, n
+            do v = 1, n_var
+              buffer(at + i + n*(v - 1)) = b%a(first(1) + i - 1, v, j, k)
+            end do
+          end do
+          at = at + n*n_var
+        else
+          do v = 1, n_var
+            buffer(at + 1:at + n) = b%a(first(1):last(1), v, j, k)
+            at = at + n
+          end do
+        end if
       end do
     end do
   end subroutine pack_slab
@@ -361,15 +404,24 @@ contains
     type(block), intent(inout) :: b
     integer, intent(in) :: first(3), last(3), n_var
     real(wp), intent(in) :: buffer(:)
-    integer :: j, k, v, n, at
+    integer :: i, j, k, v, n, at
     n = last(1) - first(1) + 1
     at = 0
     do k = first(3), last(3)
       do j = first(2), last(2)
-        do v = 1, n_var
-          b%a(first(1):last(1), v, j, k) = buffer(at + 1:at + n)
-          at = at + n
-        end do
+        if (n <= thin) then
+          do i = 1, n
+            do v = 1, n_var
+              b%a(first(1) + i - 1, v, j, k) = buffer(at + i + n*(v - 1))
+            end do
+          end do
+          at = at + n*n_var
+        else
+          do v = 1, n_var
+            b%a(first(1):last(1), v, j, k) = buffer(at + 1:at + n)
+            at = at + n
+          end do
+        end if
       end do
     end do
   end subroutine unpack_slab
