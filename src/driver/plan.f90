@@ -68,6 +68,7 @@ contains
     real(wp), allocatable :: count(:)
     real(wp) :: uneven(3)
     integer :: b, d
+    allocate (count(size(mesh%brick)))
     count = planned_particles(deck, mesh)
     uneven = 0
     do d = 1, 3

@@ -65,8 +65,8 @@ contains
     line = trim(percent)//'  step '//str(figures%step)//'  t '//str(figures%time, 5)//unit_text(figures%time_unit)// &
       '  dt '//str(figures%dt, 3)//' ('//figures%limiter//')'
     if (left >= 0) line = line//'  left '//duration_text(left)
-    line = line//'  drift: mass '//short(figures%mass_drift)//', momentum '//short(figures%momentum_drift)// &
-      ', energy '//short(figures%energy_drift)//'  repairs '//str(figures%repairs)//'  '//memory_text(figures%memory)
+    line = line//'  drift: mass '//brief(figures%mass_drift)//', momentum '//brief(figures%momentum_drift)// &
+      ', energy '//brief(figures%energy_drift)//'  repairs '//str(figures%repairs)//'  '//memory_text(figures%memory)
     if (speed > 0) line = line//'  '//str(1e-6_wp*speed, 3)//' Mcells/s'
   end function report_line
 
@@ -153,12 +153,12 @@ contains
   end function unit_text
 
   !> A drift in a few letters.
-  pure function short(value) result(string)
+  pure function brief(value) result(string)
     real(wp), intent(in) :: value
     character(:), allocatable :: string
     character(10) :: buffer
     write (buffer, '(es9.1e2)') value
     string = trim(adjustl(buffer))
-  end function short
+  end function brief
 
 end module report

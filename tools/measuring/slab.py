@@ -1,13 +1,13 @@
-"""Deflection and spall of the slab. Spall: material of the back half that has moved away from the middle of the slab by more than
-OPENING; its radius is that of a circle with the same area, its depth the mean thickness between the back face and the deepest
-particle that has moved so."""
+"""Deflection and spall of the slab. Spall: material that has moved away from the front face before it by more than an opening; its
+radius is that of a circle with the same area, its depth the thickness between the back face and the deepest particle that has moved
+so, for several openings."""
 import csv
 
 import numpy as np
 
 from snapshot_files import open_snapshot
 
-OPENING = 0.004  # m
+OPENINGS = (0.004, 0.008, 0.016)  # m
 QUARTERS = 4  # of the slab that the model leaves out, itself included
 
 
@@ -47,21 +47,21 @@ def measure(folder):
     column = np.floor(start[:, :2] / pitch).astype(int)
     key = column[:, 0] * 100000 + column[:, 1]
     z = start[:, 2]
-    middle = 0.5 * (z.min() + z.max())
-    reference, spalled, depths = {}, 0, []
-    near = concrete & (np.abs(z - middle) < 1.01 * pitch)
-    for k, d in zip(key[near], moved[near]):
+    reference = {}
+    front = concrete & (z < z.min() + 1.5 * pitch)
+    for k, d in zip(key[front], moved[front]):
         reference.setdefault(k, []).append(d)
     reference = {k: np.nanmean(v) for k, v in reference.items()}
-    back = concrete & (z > middle) & np.isfinite(moved)
-    opened = np.array([moved[i] - reference.get(key[i], np.nan) > OPENING for i in np.nonzero(back)[0]])
-    if opened.any():
-        chosen = np.nonzero(back)[0][opened]
-        for k in np.unique(key[chosen]):
-            depths.append(z.max() + 0.5 * pitch - z[chosen][key[chosen] == k].min() + 0.5 * pitch)
-        spalled = len(depths)
-    area = spalled * pitch ** 2 * QUARTERS
-    print(f"  spall: radius {1e3 * np.sqrt(area / np.pi):.0f} mm, mean depth {1e3 * np.mean(depths) if depths else 0:.0f} mm "
-          f"of {1e3 * (z.max() - z.min() + pitch):.0f} mm (opening over {1e3 * OPENING:.0f} mm)")
+    behind = np.nonzero(concrete & np.isfinite(moved))[0]
+    opening = np.array([moved[i] - reference.get(key[i], np.nan) for i in behind])
+    for least in OPENINGS:
+        deepest = {}
+        for i in behind[opening > least]:
+            deepest[key[i]] = min(deepest.get(key[i], np.inf), z[i])
+        within = [z.max() + pitch - low for k, low in deepest.items() if np.hypot(k // 100000, k % 100000) * pitch < 0.06]
+        radius = np.sqrt(len(deepest) * pitch ** 2 * QUARTERS / np.pi)
+        print(f"  spall (opening over {1e3 * least:.0f} mm): radius {1e3 * radius:.0f} mm, depth "
+              f"{1e3 * np.mean(within) if within else 0:.0f} mm (mean over 60 mm around the centre) of "
+              f"{1e3 * (z.max() - z.min() + pitch):.0f} mm")
     for name, face in (("front", z < z.min() + pitch), ("back", z > z.max() - pitch)):
         print(f"  failed part of the {name} face: {100 * failed[concrete & face].mean():.0f} %")
