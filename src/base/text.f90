@@ -3,7 +3,7 @@ module text
   use kinds, only: wp, i8
   implicit none
   private
-  public :: str, lowercase, nearest_name, edit_distance, join
+  public :: str, lowercase, nearest_name, edit_distance, join, append
 
   !> A number or a logical as short text.
   interface str
@@ -145,5 +145,18 @@ contains
       string = string//trim(list(i))
     end do
   end function join
+
+  !> Adds a string to a list, cut or filled up to the length of its strings.
+  pure subroutine append(list, string)
+    character(*), allocatable, intent(inout) :: list(:)
+    character(*), intent(in) :: string
+    character(len(list)), allocatable :: longer(:)
+    integer :: n
+    n = size(list)
+    allocate (longer(n + 1))
+    longer(:n) = list
+    longer(n + 1) = string
+    call move_alloc(longer, list)
+  end subroutine append
 
 end module text

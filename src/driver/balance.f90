@@ -34,7 +34,7 @@ contains
     type(scene_type), intent(in) :: scene
     type(balance_type) :: balance
     integer :: m, e, n, d
-    real(wp) :: books(size(scene%coupling%books))
+    real(wp), allocatable :: books(:)
     if (scene%has_flow) then
       balance%flow = sum_flow(scene%mesh, scene%flow)
       m = scene%flow%layout%momentum_flux
@@ -65,6 +65,7 @@ contains
       end associate
     end if
     if (scene%coupled) then
+      allocate (books(size(scene%coupling%books)))
       books = scene%coupling%books
       balance%exchanged = books(booked_impulse:booked_impulse + 2)
       balance%taken_from_flow = books(booked_kinetic)

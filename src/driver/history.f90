@@ -5,6 +5,7 @@ module history
   use kinds, only: wp
   use scene, only: scene_type
   use solid_state, only: book_lost_mass, book_lost_count
+  use text, only: append
   use units, only: unit_labels_type
   implicit none
   private
@@ -68,9 +69,7 @@ contains
 
     subroutine add(name, unit)
       character(*), intent(in) :: name, unit
-      character(column_length) :: heading
-      heading = name//' ['//trim(unit)//']'
-      column = [column, heading]
+      call append(column, name//' ['//trim(unit)//']')
     end subroutine add
 
     subroutine add_vector(name, unit)

@@ -2,7 +2,7 @@
 module options
   use errors, only: fatal, exit_bad_input
   use kinds, only: wp
-  use text, only: nearest_name
+  use text, only: append, nearest_name
   implicit none
   private
   public :: read_options, usage
@@ -88,7 +88,6 @@ contains
   subroutine store_value(options, name, value)
     type(options_type), intent(inout) :: options
     character(*), intent(in) :: name, value
-    character(256) :: override
     integer :: status
     status = 0
     select case (name)
@@ -97,8 +96,7 @@ contains
     case ('--steps'); read (value, *, iostat=status) options%steps
     case ('--wall-limit'); read (value, *, iostat=status) options%wall_limit
     case ('--set')
-      override = value
-      options%overrides = [options%overrides, override]
+      call append(options%overrides, value)
     end select
     if (status /= 0) call fatal('option '//name//': "'//value//'" is not a number', exit_bad_input)
   end subroutine store_value

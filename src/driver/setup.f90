@@ -72,20 +72,28 @@ contains
     end if
   end subroutine make_scene
 
-  !> Tells what the bodies came to.
+  !> Tells what the bodies came to; shapes of the same name and material, the bars of a mesh say, in one line.
   subroutine say_pieces(scene, pieces)
     type(scene_type), intent(in) :: scene
     type(piece_type), intent(in) :: pieces(:)
     type(unit_labels_type) :: labels
-    integer :: i
+    integer :: first, last, n
     labels = unit_labels(trim(scene%deck%run%units))
-    do i = 1, size(pieces)
-      associate (piece => pieces(i))
-        call say('body '//trim(piece%name)//': '//str(piece%count)//' particles of '// &
-                 trim(scene%solid%material(piece%set)%name)//', mass '// &
-                 str(piece%volume*scene%solid%material(piece%set)%density)//' '//trim(labels%mass)// &
-                 ', particle volume scaled by '//str(piece%scale))
+    n = size(pieces)
+    first = 1
+    do while (first <= n)
+      last = first
+      do while (last < n)
+        if (pieces(last + 1)%name /= pieces(first)%name .or. pieces(last + 1)%set /= pieces(first)%set) exit
+        last = last + 1
+      end do
+      associate (same => pieces(first:last), material => scene%solid%material(pieces(first)%set))
+        call say('body '//trim(same(1)%name)//': '//str(sum(same%count))//' particles of '//trim(material%name)//' in '// &
+                 str(size(same))//trim(merge(' shape ', ' shapes', size(same) == 1))//', mass '// &
+                 str(sum(same%volume)*material%density)//' '//trim(labels%mass)// &
+                 ', particle volume over that of its lattice '//str(minval(same%scale), 4))
       end associate
+      first = last + 1
     end do
   end subroutine say_pieces
 

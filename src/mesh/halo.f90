@@ -282,6 +282,7 @@ contains
       call to_give(mesh, halo%outgoing(t)%direction, first, last)
       at = at + n_var*product(last - first + 1)
     end do
+    at = at + 1 ! an empty message has a place too
     if (size(halo%sent) < at) then
       deallocate (halo%sent)
       allocate (halo%sent(at))

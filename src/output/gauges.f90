@@ -14,6 +14,7 @@ module gauges
   use restart_values, only: restart_get, restart_put
   use solid_gauges, only: nearest_particle, read_gauges, solid_gauge
   use solid_state, only: solid_type
+  use text, only: append
   use units, only: unit_labels_type
   implicit none
   private
@@ -81,9 +82,7 @@ contains
 
     subroutine add_column(quantity, unit)
       character(*), intent(in) :: quantity, unit
-      character(column_length) :: heading
-      heading = trim(gauges%name(g))//'.'//quantity//' ['//trim(unit)//']'
-      gauges%column = [gauges%column, heading]
+      call append(gauges%column, trim(gauges%name(g))//'.'//quantity//' ['//trim(unit)//']')
     end subroutine add_column
 
     subroutine add_vector(quantity, unit)
