@@ -19,8 +19,9 @@ TABLE = [
     ("upstream interface, first", "upstream_on_axis", (5, 60), None, 170, 178),
     ("upstream interface, later", "upstream_edge", (300, 700), None, 113, None),
     ("downstream interface, first", "downstream_on_axis", (70, 240), None, 145, 146),
-    ("downstream interface, later", "downstream_edge", (400, 900), None, 97, None),
+    ("downstream interface, later", "downstream_on_axis", (240, 450), None, 97, None),
     ("head of the air jet", "upstream_on_axis", (130, 230), None, 230, 227),
+    ("front of the vortex pair", "downstream_edge", (740, 980), None, 128, None),
 ]
 
 
