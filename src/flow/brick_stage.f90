@@ -160,7 +160,7 @@ contains
     subroutine reconstruct_y(j, k, high)
       integer, intent(in) :: j, k
       real(wp), intent(inout) :: high(ld, *)
-      call reconstruct(n(1), from(1, 1, j - 1, k), from(1, 1, j, k), from(1, 1, j + 1, k), s%low, high)
+      call reconstruct(whole(n(1)), from(1, 1, j - 1, k), from(1, 1, j, k), from(1, 1, j + 1, k), s%low, high)
       if (present(open)) call flatten_next_to_closed(n(1), ld, layout%n_reconstructed, from(1, 1, j, k), &
         open(1, 1, j - 1, k), open(1, 1, j, k), open(1, 1, j + 1, k), s%low, high)
     end subroutine reconstruct_y
@@ -168,10 +168,17 @@ contains
     subroutine reconstruct_z(j, k, high)
       integer, intent(in) :: j, k
       real(wp), intent(inout) :: high(ld, *)
-      call reconstruct(n(1), from(1, 1, j, k - 1), from(1, 1, j, k), from(1, 1, j, k + 1), s%low, high)
+      call reconstruct(whole(n(1)), from(1, 1, j, k - 1), from(1, 1, j, k), from(1, 1, j, k + 1), s%low, high)
       if (present(open)) call flatten_next_to_closed(n(1), ld, layout%n_reconstructed, from(1, 1, j, k), &
         open(1, 1, j, k - 1), open(1, 1, j, k), open(1, 1, j, k + 1), s%low, high)
     end subroutine reconstruct_z
+
+    !> A row in whole vectors: what lies behind its cells is ghosts and padding, whose face values nobody reads.
+    pure integer function whole(n_cells)
+      integer, intent(in) :: n_cells
+      integer, parameter :: vector = 4
+      whole = min(vector*((n_cells + vector - 1)/vector), ld - 2*g(1) - 1)
+    end function whole
 
     subroutine reconstruct(n_cells, below, here, above, low, high)
       integer, intent(in) :: n_cells
