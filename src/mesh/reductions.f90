@@ -2,12 +2,11 @@
 module reductions
   use kinds, only: wp
   use mesh, only: mesh_type
-  use mpi_f08, only: MPI_Allgather, MPI_Allgatherv, MPI_Allreduce, MPI_Bcast, MPI_DOUBLE_PRECISION, MPI_INTEGER, &
-    MPI_LOGICAL, MPI_LOR
+  use mpi_f08, only: MPI_Allgather, MPI_Allgatherv, MPI_Allreduce, MPI_DOUBLE_PRECISION, MPI_LOGICAL, MPI_LOR
   use parallel, only: world, n_ranks
   implicit none
   private
-  public :: reduce_sum, reduce_max, reduce_min, any_rank, from_root
+  public :: reduce_sum, reduce_max, reduce_min, any_rank
 
 contains
 
@@ -61,11 +60,5 @@ contains
     logical, intent(in) :: mine
     call MPI_Allreduce(mine, any_rank, 1, MPI_LOGICAL, MPI_LOR, world)
   end function any_rank
-
-  !> Gives every rank the root's integer.
-  subroutine from_root(value)
-    integer, intent(inout) :: value
-    call MPI_Bcast(value, 1, MPI_INTEGER, 0, world)
-  end subroutine from_root
 
 end module reductions

@@ -60,7 +60,7 @@ contains
     call add(mesh, halo, solid%node, 4)
     do b = 1, mesh%n_local
       if (.not. allocated(solid%node(b)%a)) cycle
-      call divide_by_mass(solid%node(b)%a)
+      call divide_by_mass(solid%node(b)%a(:, 1, :, :), solid%node(b)%a(:, 2:4, :, :))
       call hold_nodes(solid%support(b), 1, solid%node(b))
     end do
   end subroutine project_solid
@@ -105,7 +105,7 @@ contains
     call add(mesh, halo, solid%mapped, 3)
     do b = 1, mesh%n_local
       if (.not. allocated(solid%node(b)%a)) cycle
-      call divide_mapped(solid%node(b)%a, solid%mapped(b)%a)
+      call divide_by_mass(solid%node(b)%a(:, 1, :, :), solid%mapped(b)%a)
       call hold_nodes(solid%support(b), 0, solid%mapped(b))
       do set = 1, solid%n_sets
         if (solid%block(set, b)%n > 0) call move_and_strain(mesh, solid, dt, set, b, outbox)
@@ -186,40 +186,23 @@ contains
   end subroutine count_particles
 
   !> Momentum to velocity; zero where there is no mass.
-  pure subroutine divide_by_mass(node)
-    real(wp), intent(inout) :: node(:, :, :, :)
+  pure subroutine divide_by_mass(mass, momentum)
+    real(wp), intent(in) :: mass(:, :, :)
+    real(wp), intent(inout) :: momentum(:, :, :, :)
     real(wp) :: inverse
     integer :: i, j, k
-    do k = 1, size(node, 4)
-      do j = 1, size(node, 3)
+    do k = 1, size(mass, 3)
+      do j = 1, size(mass, 2)
         !$omp simd private(inverse)
-        do i = 1, size(node, 1)
-          inverse = merge(1/max(node(i, 1, j, k), tiny(1.0_wp)), 0.0_wp, node(i, 1, j, k) > 0)
-          node(i, 2, j, k) = node(i, 2, j, k)*inverse
-          node(i, 3, j, k) = node(i, 3, j, k)*inverse
-          node(i, 4, j, k) = node(i, 4, j, k)*inverse
+        do i = 1, size(mass, 1)
+          inverse = merge(1/max(mass(i, j, k), tiny(1.0_wp)), 0.0_wp, mass(i, j, k) > 0)
+          momentum(i, 1, j, k) = momentum(i, 1, j, k)*inverse
+          momentum(i, 2, j, k) = momentum(i, 2, j, k)*inverse
+          momentum(i, 3, j, k) = momentum(i, 3, j, k)*inverse
         end do
       end do
     end do
   end subroutine divide_by_mass
-
-  pure subroutine divide_mapped(node, mapped)
-    real(wp), intent(in) :: node(:, :, :, :)
-    real(wp), intent(inout) :: mapped(:, :, :, :)
-    real(wp) :: inverse
-    integer :: i, j, k
-    do k = 1, size(node, 4)
-      do j = 1, size(node, 3)
-        !$omp simd private(inverse)
-        do i = 1, size(node, 1)
-          inverse = merge(1/max(node(i, 1, j, k), tiny(1.0_wp)), 0.0_wp, node(i, 1, j, k) > 0)
-          mapped(i, 1, j, k) = mapped(i, 1, j, k)*inverse
-          mapped(i, 2, j, k) = mapped(i, 2, j, k)*inverse
-          mapped(i, 3, j, k) = mapped(i, 3, j, k)*inverse
-        end do
-      end do
-    end do
-  end subroutine divide_mapped
 
   !> Force to velocity change of the step.
   pure subroutine accelerate(dt, gravity, node, force)
