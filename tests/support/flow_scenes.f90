@@ -1,6 +1,7 @@
 !> Small scenes of flow alone, without a deck.
 module flow_scenes
   use equation_of_state, only: eos_type
+  use flow_scheme, only: scheme_type, ghost_layers, muscl, venkatakrishnan
   use flow_state, only: flow_type, allocate_flow, face_periodic
   use flow_step, only: advance_stage, accept_step
   use flow_time_step, only: flow_limit, flow_limit_type
@@ -31,19 +32,29 @@ module flow_scenes
 
 contains
 
-  !> A scene on the given cells and bricks (0: one brick) with all faces alike (see flow_state).
-  subroutine make_scene(scene, eos, cells, lower, upper, brick, face, start)
+  !> A scene on the given cells and bricks (0: one brick) with all faces alike (see flow_state), or each as faces says (low and high
+  !> face of each direction; periodic ones in pairs). What enters at inflow faces is to be set after. scheme: if not the paper's.
+  subroutine make_scene(scene, eos, cells, lower, upper, brick, face, start, faces, scheme)
     type(flow_scene), intent(out) :: scene
     type(eos_type), intent(in) :: eos(:)
     integer, intent(in) :: cells(3), brick(3), face
     real(wp), intent(in) :: lower(3), upper(3)
     procedure(start_state) :: start
+    integer, intent(in), optional :: faces(2, 3)
+    type(scheme_type), intent(in), optional :: scheme
+    type(scheme_type) :: chosen
     real(wp) :: r(size(eos)), a(size(eos)), u(3), p, x(3)
-    integer :: b, i, j, k
-    call build_mesh(scene%mesh, cells, lower, upper, merge(brick, cells, brick > 0), spread(face == face_periodic, 1, 3), 2)
+    integer :: b, i, j, k, each(2, 3)
+    each = face
+    if (present(faces)) each = faces
+    chosen = scheme_type(muscl, venkatakrishnan, .false., .false.)
+    if (present(scheme)) chosen = scheme
+    call build_mesh(scene%mesh, cells, lower, upper, merge(brick, cells, brick > 0), each(1, :) == face_periodic, &
+      ghost_layers(chosen))
     call plan_halo(scene%mesh, scene%halo)
+    ! here: scene%flow%scheme = chosen
     call allocate_flow(scene%flow, scene%mesh, spread('gas', 1, size(eos)), eos)
-    scene%flow%face = face
+    scene%flow%face = each
     associate (n => scene%mesh%brick_cells)
       do b = 1, scene%mesh%n_local
         do k = 1, n(3)
