@@ -11,7 +11,7 @@ module flow_scenes
   use mixture, only: cell_from
   implicit none
   private
-  public :: make_scene, run_until, run_steps, row_of_cells, value_at
+  public :: make_scene, run_until, run_steps, run_step, row_of_cells, value_at
 
   type, public :: flow_scene
     type(mesh_type) :: mesh
@@ -79,7 +79,7 @@ contains
     do while (scene%time < end_time*(1 - 1e-12_wp))
       limit = flow_limit(scene%mesh, scene%flow)
       dt = min(limit%dt, end_time - scene%time)
-      call step(scene, dt)
+      call run_step(scene, dt)
     end do
   end subroutine run_until
 
@@ -91,11 +91,12 @@ contains
     integer :: i
     do i = 1, n
       limit = flow_limit(scene%mesh, scene%flow)
-      call step(scene, limit%dt)
+      call run_step(scene, limit%dt)
     end do
   end subroutine run_steps
 
-  subroutine step(scene, dt)
+  !> One step of a given length.
+  subroutine run_step(scene, dt)
     type(flow_scene), intent(inout) :: scene
     real(wp), intent(in) :: dt
     integer :: stage
@@ -105,7 +106,7 @@ contains
     call accept_step(scene%flow)
     scene%time = scene%time + dt
     scene%steps = scene%steps + 1
-  end subroutine step
+  end subroutine run_step
 
   !> One variable along direction d through the first cells of the other directions, on one rank.
   function row_of_cells(scene, d, row) result(values)
