@@ -21,6 +21,7 @@ module isentropes
   contains
     procedure :: lowest_pressure => end_pressure !< of the isentrope: vacuum, or the strongest tension
     procedure :: at_pressure
+    procedure :: at_density
     procedure :: at_velocity !< where w has a value
     procedure :: at_speed !< where w + c has a value: in a fan
   end type isentrope_type
@@ -68,6 +69,33 @@ contains
       point = found(self, by_pressure, pressure)
     end if
   end function at_pressure
+
+  !> The point at a density between the lowest one and that of the start (of a gas: also above).
+  pure function at_density(self, density) result(point)
+    class(isentrope_type), intent(in) :: self
+    real(wp), intent(in) :: density
+    type(isentrope_point) :: point
+    real(wp) :: error
+    integer :: above, below, middle
+    logical :: possible
+    if (self%closed_form) then
+      point = gas_point(self, (density/self%start%density)**(0.5_wp*(self%eos%gas%gamma - 1)))
+      return
+    end if
+    above = 1
+    below = size(self%s)
+    do while (below - above > 1)
+      middle = (above + below)/2
+      if (self%start%density*exp(self%s(middle)) > density) then
+        above = middle
+      else
+        below = middle
+      end if
+    end do
+    point%density = density
+    call step(self%eos, self%start%density, self%s(above), self%p(above), self%w(above), &
+      log(density/self%start%density) - self%s(above), point%pressure, point%velocity, point%sound_speed, error, possible)
+  end function at_density
 
   !> The point where the velocity change is w; the end of the isentrope if it is never that large.
   pure function at_velocity(self, w) result(point)
