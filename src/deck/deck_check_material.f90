@@ -33,6 +33,7 @@ contains
     call warn_of_idle_constants(material, table, warnings)
     call check_failure(material, table, problems)
     if (material%model == 'hjc') call check_hjc(material, table, problems, warnings)
+    if (material%eos == 'cochran_chan') call check_cochran_chan(material, table, problems)
     if (material%model == 'johnson_cook' .and. material%melt_temperature <= material%reference_temperature) &
       call problems%add_at_key(table, 'melt_temperature', 'must lie above reference_temperature')
     if (material%model == 'linear_hardening' .and. material%ultimate_stress > 0.0_wp .and. &
@@ -114,6 +115,13 @@ contains
       names = [character(key_length) :: 'gamma', 'p_infinity']
     case ('jwl')
       names = [character(key_length) :: 'density', 'jwl_a', 'jwl_b', 'jwl_r1', 'jwl_r2', 'jwl_omega', 'energy_per_volume']
+    case ('cochran_chan')
+      names = [character(key_length) :: 'density', 'grueneisen', 'cochran_chan_a1', 'cochran_chan_a2', 'cochran_chan_e1', &
+        'cochran_chan_e2']
+    case ('shock')
+      names = [character(key_length) :: 'density', 'grueneisen', 'sound_speed', 'hugoniot_slope']
+    case ('polynomial')
+      names = [character(key_length) :: 'density', 'grueneisen', 'polynomial_k1']
     end select
   end function needs_of_eos
 
@@ -148,6 +156,7 @@ contains
     names = [character(key_length) :: 'name', 'library', 'eos', 'model', 'density']
     if (any(material%eos == [character(key_length) :: 'ideal_gas', 'stiffened_gas'])) &
       names = [character(key_length) :: names, 'energy_offset']
+    if (material%eos == 'polynomial') names = [character(key_length) :: names, 'polynomial_k2', 'polynomial_k3']
     if (material%model /= '') names = [character(key_length) :: names, 'bulk_viscosity_linear', 'bulk_viscosity_quadratic', &
       'failure', 'failure_strain']
     select case (material%model)
@@ -198,6 +207,22 @@ contains
       call problems%add_at_key(table, 'failure', 'model '''//trim(material%model)//''' has no damage (allowed: strain, none)')
     end if
   end subroutine check_failure
+
+  ! Sound at rest: r c**2 = A1 (E1 - 1 - g) - A2 (E2 - 1 - g) at V = 1 and p = 0. Thinned out the second term is left alone.
+  subroutine check_cochran_chan(material, table, problems)
+    type(material_group), intent(in) :: material
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems
+    associate (g => material%grueneisen, e1 => material%cochran_chan_e1, e2 => material%cochran_chan_e2)
+      if (e2 >= e1) then
+        call problems%add_at_key(table, 'cochran_chan_e2', 'must be less than cochran_chan_e1')
+      else if (e2 - 1 > g) then
+        call problems%add_at_key(table, 'grueneisen', 'must not be less than cochran_chan_e2 - 1: thinned out it has no sound')
+      else if (material%cochran_chan_a1*(e1 - 1 - g) - material%cochran_chan_a2*(e2 - 1 - g) <= 0.0_wp) then
+        call problems%add_at_key(table, 'cochran_chan_a1', 'with these constants there is no sound at rest')
+      end if
+    end associate
+  end subroutine check_cochran_chan
 
   ! The crush curve must rise from (0, 0) over crush and lock, and its last part must reach P_lock.
   subroutine check_hjc(material, table, problems, warnings)
@@ -280,14 +305,20 @@ contains
     type(key_table), intent(in) :: table
     type(problem_list), intent(inout) :: warnings
     real(wp) :: density, speed, energy
+    logical :: is_condensed
     density = 0
+    is_condensed = any(material%eos == [character(key_length) :: 'cochran_chan', 'shock', 'polynomial'])
     if (material%density > unset) density = to_si(material%density, 1, -3, 0, system)
-    if ((material%model /= '' .or. material%eos == 'jwl') .and. density < 50.0_wp) then
+    if ((material%model /= '' .or. material%eos == 'jwl' .or. is_condensed) .and. density < 50.0_wp) then
       if (material%model /= 'fluid') call warnings%add_at_key(table, 'density', 'is '//str(density, 3)// &
-        ' kg/m^3, less than any solid or explosive')
+        ' kg/m^3, less than any solid, liquid or explosive')
     else if (material%youngs_modulus > unset .and. material%model /= '') then
       speed = sqrt(to_si(material%youngs_modulus, 1, -1, -2, system)/density)
       if (speed < 20.0_wp .or. speed > 3e4_wp) call warnings%add_at_key(table, 'youngs_modulus', &
+        'with this density gives sound a speed of '//str(speed, 3)//' m/s: are both in the units '//system//'?')
+    else if (material%eos == 'polynomial') then
+      speed = sqrt(to_si(material%polynomial_k1, 1, -1, -2, system)/density)
+      if (speed < 100.0_wp .or. speed > 3e4_wp) call warnings%add_at_key(table, 'polynomial_k1', &
         'with this density gives sound a speed of '//str(speed, 3)//' m/s: are both in the units '//system//'?')
     else if (material%eos == 'jwl') then
       energy = to_si(material%energy_per_volume, 1, -1, -2, system)/density

@@ -3,13 +3,13 @@ module deck_material
   use kinds, only: wp
   use constants, only: unset
   use deck_keys, only: key_table, word_length
-  use units, only: of_density, of_energy_per_mass, of_pressure, of_rate, of_specific_heat, of_temperature
+  use units, only: of_density, of_energy_per_mass, of_pressure, of_rate, of_specific_heat, of_temperature, of_velocity
   implicit none
   private
   public :: material_keys
 
-  character(word_length), parameter, public :: eos_names(4) = &
-    [character(word_length) :: '', 'ideal_gas', 'stiffened_gas', 'jwl']
+  character(word_length), parameter, public :: eos_names(7) = &
+    [character(word_length) :: '', 'ideal_gas', 'stiffened_gas', 'jwl', 'cochran_chan', 'shock', 'polynomial']
   character(word_length), parameter, public :: model_names(8) = [character(word_length) :: '', 'elastic', &
     'perfect_plasticity', 'linear_hardening', 'johnson_cook', 'simplified_johnson_cook', 'hjc', 'fluid']
 
@@ -25,6 +25,11 @@ module deck_material
     ! JWL
     real(wp) :: jwl_a = unset, jwl_b = unset, jwl_r1 = unset, jwl_r2 = unset, jwl_omega = unset
     real(wp) :: energy_per_volume = unset !< E0, per initial volume
+    ! condensed matter that flows
+    real(wp) :: grueneisen = unset !< constant
+    real(wp) :: cochran_chan_a1 = unset, cochran_chan_a2 = unset, cochran_chan_e1 = unset, cochran_chan_e2 = unset
+    real(wp) :: sound_speed = unset, hugoniot_slope = unset !< c0 and s of us = c0 + s up
+    real(wp) :: polynomial_k1 = unset, polynomial_k2 = 0, polynomial_k3 = 0
     ! elasticity and plasticity
     real(wp) :: youngs_modulus = unset, poissons_ratio = unset
     real(wp) :: yield_stress = unset, hardening_modulus = unset
@@ -67,6 +72,16 @@ contains
     call table%add('jwl_r2', group%jwl_r2, more_than=none)
     call table%add('jwl_omega', group%jwl_omega, more_than=none)
     call table%add('energy_per_volume', group%energy_per_volume, of_pressure, more_than=none, usual=[1e8_wp, 5e10_wp])
+    call table%add('grueneisen', group%grueneisen, more_than=none, at_most=10.0_wp)
+    call table%add('cochran_chan_a1', group%cochran_chan_a1, of_pressure, more_than=none, usual=[1e7_wp, 1e13_wp])
+    call table%add('cochran_chan_a2', group%cochran_chan_a2, of_pressure, at_least=none, usual=[0.0_wp, 1e13_wp])
+    call table%add('cochran_chan_e1', group%cochran_chan_e1, more_than=1.0_wp, at_most=20.0_wp)
+    call table%add('cochran_chan_e2', group%cochran_chan_e2, more_than=1.0_wp, at_most=20.0_wp)
+    call table%add('sound_speed', group%sound_speed, of_velocity, more_than=none, usual=[100.0_wp, 2e4_wp])
+    call table%add('hugoniot_slope', group%hugoniot_slope, more_than=none, at_most=10.0_wp)
+    call table%add('polynomial_k1', group%polynomial_k1, of_pressure, more_than=none, usual=[1e7_wp, 1e12_wp])
+    call table%add('polynomial_k2', group%polynomial_k2, of_pressure, usual=[-1e13_wp, 1e13_wp])
+    call table%add('polynomial_k3', group%polynomial_k3, of_pressure, usual=[-1e13_wp, 1e13_wp])
     call table%add('youngs_modulus', group%youngs_modulus, of_pressure, more_than=none, usual=usual_modulus)
     call table%add('poissons_ratio', group%poissons_ratio, more_than=-1.0_wp, less_than=0.5_wp)
     call table%add('yield_stress', group%yield_stress, of_pressure, more_than=none, usual=usual_strength)

@@ -1,8 +1,11 @@
 !> What a run is going to be, before anything large is allocated: cells, bricks, particles, memory, time step, run time.
 module plan
-  use deck_types, only: deck_type
+  use chapman_jouguet, only: chapman_jouguet_state
+  use deck_types, only: deck_type, find_material
+  use equation_of_state, only: eos_type
   use kinds, only: wp, i8
   use log, only: say
+  use material_eos, only: eos_of
   use mesh, only: mesh_type
   use parallel, only: n_ranks
   use report, only: duration_text, memory_text
@@ -38,6 +41,7 @@ contains
                trim(merge(' rank ', ' ranks', n_ranks == 1)))
       if (deck%has_flow) call say('flow: '//trim(materials_text(deck))//', scheme '//trim(deck%flow%limiter)//' + '// &
                                   trim(deck%flow%riemann))
+      call tell_explosives(deck, labels)
       if (deck%has_solid) call say('solid: about '//str(nint(particles))//' particles, scheme '//trim(deck%solid%scheme))
       if (deck%has_flow .and. deck%has_solid) call say('coupling: '//trim(deck%coupling%method))
       call say('memory: about '//memory_text(int(bytes, i8)))
@@ -48,6 +52,27 @@ contains
                str(dt, 3)//' '//trim(labels%time)//', about '//duration_text(seconds))
     end associate
   end subroutine print_plan
+
+  !> Detonation of each explosive of a charge, as it follows from its own JWL constants.
+  subroutine tell_explosives(deck, labels)
+    type(deck_type), intent(in) :: deck
+    type(unit_labels_type), intent(in) :: labels
+    type(eos_type) :: eos
+    real(wp) :: speed, pressure, relative_volume
+    integer :: c, m
+    logical :: told(size(deck%material))
+    told = .false.
+    do c = 1, size(deck%charge)
+      m = find_material(deck, deck%charge(c)%explosive)
+      if (told(m)) cycle
+      told(m) = .true.
+      eos = eos_of(deck%material(m))
+      call chapman_jouguet_state(eos%jwl, speed, pressure, relative_volume)
+      call say('explosive '//trim(deck%material(m)%name)//': Chapman-Jouguet detonation at '//str(speed, 5)//' '// &
+               trim(labels%velocity)//', pressure '//str(pressure, 5)//' '//trim(labels%pressure)//', relative volume '// &
+               str(relative_volume, 4))
+    end do
+  end subroutine tell_explosives
 
   !> Cost of each brick, for the share of the ranks: cells of the flow and particles that start there.
   function brick_weights(deck, mesh) result(weight)

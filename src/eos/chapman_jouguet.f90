@@ -8,7 +8,8 @@ module chapman_jouguet
 
 contains
 
-  !> Speed D, pressure and relative volume V of the Chapman-Jouguet point of an explosive at rest at zero pressure.
+  !> Speed D, pressure and relative volume V of the Chapman-Jouguet point of an explosive at rest at zero pressure. The speed
+  !> is 0 for constants that allow no detonation.
   !> Hugoniot: E - E0 = p (1 - V)/2; Rayleigh line: r0 D**2 = p/(1 - V), whose smallest value on the Hugoniot is the point.
   pure subroutine chapman_jouguet_state(eos, speed, pressure, relative_volume)
     type(jwl_type), intent(in) :: eos
@@ -35,7 +36,7 @@ contains
     end do
     relative_volume = 0.5_wp*(low + high)
     pressure = hugoniot_pressure(eos, relative_volume)
-    speed = sqrt(rayleigh_slope(eos, relative_volume)/eos%density)
+    speed = sqrt(max(rayleigh_slope(eos, relative_volume), 0.0_wp)/eos%density)
   end subroutine chapman_jouguet_state
 
   pure real(wp) function rayleigh_slope(eos, v)

@@ -5,7 +5,7 @@ module jwl
   use kinds, only: wp
   implicit none
   private
-  public :: jwl_reference, jwl_pressure, jwl_energy, jwl_sound_speed_squared, jwl_cold_pressure, jwl_isentrope_density
+  public :: jwl_reference, jwl_pressure, jwl_cold_pressure, jwl_isentrope_density
 
   type, public :: jwl_type
     real(wp) :: a = 0, b = 0 !< pressures
@@ -42,43 +42,15 @@ contains
     end do
   end subroutine jwl_reference
 
-  pure subroutine reference_point(eos, r, f, r_df)
-    type(jwl_type), intent(in) :: eos
-    real(wp), intent(in) :: r
-    real(wp), intent(out) :: f, r_df
-    real(wp) :: v(1), row_f(1), row_r_df(1)
-    v = eos%density/r
-    call jwl_reference(eos, 1, v, row_f, row_r_df)
-    f = row_f(1)
-    r_df = row_r_df(1)
-  end subroutine reference_point
-
   !> Pressure at density r and energy per mass e.
   elemental real(wp) function jwl_pressure(eos, r, e)
     type(jwl_type), intent(in) :: eos
     real(wp), intent(in) :: r, e
-    real(wp) :: f, r_df
-    call reference_point(eos, r, f, r_df)
-    jwl_pressure = f + eos%omega*r*e
+    real(wp) :: v(1), f(1), r_df(1)
+    v = eos%density/r
+    call jwl_reference(eos, 1, v, f, r_df)
+    jwl_pressure = f(1) + eos%omega*r*e
   end function jwl_pressure
-
-  !> Energy per mass at density r and pressure p.
-  elemental real(wp) function jwl_energy(eos, r, p)
-    type(jwl_type), intent(in) :: eos
-    real(wp), intent(in) :: r, p
-    real(wp) :: f, r_df
-    call reference_point(eos, r, f, r_df)
-    jwl_energy = (p - f)/(eos%omega*r)
-  end function jwl_energy
-
-  !> c**2 at density r and pressure p: r c**2 = r f' + p - f + w p.
-  elemental real(wp) function jwl_sound_speed_squared(eos, r, p)
-    type(jwl_type), intent(in) :: eos
-    real(wp), intent(in) :: r, p
-    real(wp) :: f, r_df
-    call reference_point(eos, r, f, r_df)
-    jwl_sound_speed_squared = (r_df + p - f + eos%omega*p)/r
-  end function jwl_sound_speed_squared
 
   !> The lowest pressure that the products can have at density r: the isentrope without its thermal term.
   elemental real(wp) function jwl_cold_pressure(eos, r)

@@ -2,8 +2,8 @@
 module flow_initial
   use constants, only: pi
   use deck_types, only: deck_type, find_material, material_group, charge_group, region_group, unset, word_length
-  use equation_of_state, only: eos_type, new_ideal_gas, new_stiffened_gas, new_jwl
-  use eos_check, only: check_eos
+  use equation_of_state, only: eos_type
+  use eos_check, only: check_eos, shocked_density
   use errors, only: fatal, warn, exit_bad_input
   use flow_filling, only: filling_type, share_of_regions, mixed_cell, trace_density, halvings_for
   use flow_scheme, only: scheme_type, scheme_from_words
@@ -11,6 +11,7 @@ module flow_initial
   use flow_state, only: flow_type, allocate_flow, set_inflow, face_outflow, face_symmetry, face_inflow, face_periodic
   use kinds, only: wp
   use log, only: say
+  use material_eos, only: eos_of
   use mesh, only: mesh_type
   use mixture, only: cell_from
   use reductions, only: reduce_sum, reduce_min
@@ -50,7 +51,7 @@ contains
     filling = fillings(mesh, deck, used)
     call reference_states(flow, filling, density, pressure)
     do i = 1, size(used)
-      call test_eos(flow, i, density(i), pressure(i))
+      call test_eos(flow, filling, i, density(i), pressure(i))
     end do
     flow%floor_pressure = 1e-9_wp*minval(abs(filling%pressure), abs(filling%pressure) > 0)
     call fill_bricks(mesh, flow, filling, density, pressure)
@@ -95,23 +96,6 @@ contains
       end if
     end subroutine use_material
   end subroutine list_materials
-
-  !> Equation of state of a material group.
-  function eos_of(group) result(eos)
-    type(material_group), intent(in) :: group
-    type(eos_type) :: eos
-    select case (lowercase(trim(group%eos)))
-    case ('ideal_gas')
-      eos = new_ideal_gas(group%gamma, group%energy_offset)
-    case ('stiffened_gas')
-      eos = new_stiffened_gas(group%gamma, group%p_infinity, group%energy_offset)
-    case ('jwl')
-      eos = new_jwl(group%jwl_a, group%jwl_b, group%jwl_r1, group%jwl_r2, group%jwl_omega, group%density, &
-        group%energy_per_volume)
-    case default
-      call fatal('flow: material '''//trim(group%name)//''' has the unknown eos '''//trim(group%eos)//'''', exit_bad_input)
-    end select
-  end function eos_of
 
   subroutine set_faces(deck, flow)
     type(deck_type), intent(in) :: deck
@@ -256,16 +240,43 @@ contains
     end do
   end subroutine reference_states
 
-  subroutine test_eos(flow, k, density, pressure)
+  !> Warns where the equation of state of material k fails its test, or the scene may press it beyond its reference curve.
+  subroutine test_eos(flow, filling, k, density, pressure)
     type(flow_type), intent(in) :: flow
+    type(filling_type), intent(in) :: filling(:)
     integer, intent(in) :: k
     real(wp), intent(in) :: density, pressure
     character(:), allocatable :: first
+    real(wp) :: highest, densest
     integer :: n
-    call check_eos(flow%eos(k), density, abs(pressure), n, first)
+    highest = highest_pressure(flow, filling)
+    call check_eos(flow%eos(k), density, abs(pressure), n, first, highest)
     if (n > 0) call warn('material '//flow%material_name(k)//': '//str(n)// &
       ' states of its equation of state fail the test, first '//first)
+    densest = shocked_density(flow%eos(k), density, pressure, highest)
+    if (densest > flow%eos(k)%largest_density()) call warn('material '//flow%material_name(k)//': a shock to the pressure '// &
+      str(highest)//' brings it to the density '//str(densest)//', but its reference curve is good up to '// &
+      str(flow%eos(k)%largest_density())//' only')
   end subroutine test_eos
+
+  !> The highest pressure of the first state, and of the impact of its fastest parts on each other with a shock speed of c + 2 u.
+  pure real(wp) function highest_pressure(flow, filling)
+    type(flow_type), intent(in) :: flow
+    type(filling_type), intent(in) :: filling(:)
+    real(wp) :: u, r, p
+    integer :: i, j
+    highest_pressure = maxval(filling%pressure)
+    do i = 1, size(filling)
+      r = filling(i)%density
+      p = filling(i)%pressure
+      u = 0
+      do j = 1, size(filling)
+        u = max(u, 0.5_wp*norm2(filling(j)%velocity - filling(i)%velocity))
+      end do
+      highest_pressure = max(highest_pressure, &
+        p + r*(sqrt(max(flow%eos(filling(i)%material)%sound_speed_squared(r, p), 0.0_wp)) + 2*u)*u)
+    end do
+  end function highest_pressure
 
   subroutine fill_bricks(mesh, flow, filling, density, pressure)
     type(mesh_type), intent(in) :: mesh

@@ -2,9 +2,10 @@
 module solid_material
   use constants, only: third, unset
   use deck_types, only: material_group
-  use equation_of_state, only: eos_type, new_ideal_gas, new_stiffened_gas, new_jwl
+  use equation_of_state, only: eos_type
   use errors, only: fatal, exit_bad_input
   use kinds, only: wp
+  use material_eos, only: eos_of
   use particles, only: n_fields_basic, n_fields_compacting
   use text, only: str
   implicit none
@@ -84,7 +85,7 @@ contains
       call fatal("material '"//trim(group%name)//"': model '"//trim(group%model)//"' is none of the solid's", exit_bad_input)
     end select
     if (m%model == model_fluid) then
-      m%eos = fluid_eos(group)
+      m%eos = eos_of(group)
       return
     end if
     m%shear_modulus = group%youngs_modulus/(2*(1 + group%poissons_ratio))
@@ -96,21 +97,6 @@ contains
     end if
     m%sound_speed = sqrt((m%bulk_modulus + 4*third*m%shear_modulus)/m%density)
   end function make_solid_material
-
-  function fluid_eos(group) result(eos)
-    type(material_group), intent(in) :: group
-    type(eos_type) :: eos
-    select case (group%eos)
-    case ('ideal_gas')
-      eos = new_ideal_gas(group%gamma, group%energy_offset)
-    case ('stiffened_gas')
-      eos = new_stiffened_gas(group%gamma, group%p_infinity, group%energy_offset)
-    case ('jwl')
-      eos = new_jwl(group%jwl_a, group%jwl_b, group%jwl_r1, group%jwl_r2, group%jwl_omega, group%density, group%energy_per_volume)
-    case default
-      call fatal("material '"//trim(group%name)//"': a fluid needs an equation of state", exit_bad_input)
-    end select
-  end function fluid_eos
 
   subroutine make_metal(group, m)
     type(material_group), intent(in) :: group

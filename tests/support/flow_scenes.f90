@@ -1,6 +1,7 @@
 !> Small scenes of flow alone, without a deck.
 module flow_scenes
   use equation_of_state, only: eos_type
+  use flow_scheme, only: scheme_type, ghost_layers, muscl, venkatakrishnan
   use flow_state, only: flow_type, allocate_flow, face_periodic
   use flow_step, only: advance_stage, accept_step
   use flow_time_step, only: flow_limit, flow_limit_type
@@ -10,7 +11,7 @@ module flow_scenes
   use mixture, only: cell_from
   implicit none
   private
-  public :: make_scene, run_until, run_steps, row_of_cells, value_at
+  public :: make_scene, run_until, run_steps, run_step, row_of_cells, value_at
 
   type, public :: flow_scene
     type(mesh_type) :: mesh
@@ -31,19 +32,29 @@ module flow_scenes
 
 contains
 
-  !> A scene on the given cells and bricks (0: one brick) with all faces alike (see flow_state).
-  subroutine make_scene(scene, eos, cells, lower, upper, brick, face, start)
+  !> A scene on the given cells and bricks (0: one brick) with all faces alike (see flow_state), or each as faces says (low and high
+  !> face of each direction; periodic ones in pairs). What enters at inflow faces is to be set after. scheme: if not the paper's.
+  subroutine make_scene(scene, eos, cells, lower, upper, brick, face, start, faces, scheme)
     type(flow_scene), intent(out) :: scene
     type(eos_type), intent(in) :: eos(:)
     integer, intent(in) :: cells(3), brick(3), face
     real(wp), intent(in) :: lower(3), upper(3)
     procedure(start_state) :: start
+    integer, intent(in), optional :: faces(2, 3)
+    type(scheme_type), intent(in), optional :: scheme
+    type(scheme_type) :: chosen
     real(wp) :: r(size(eos)), a(size(eos)), u(3), p, x(3)
-    integer :: b, i, j, k
-    call build_mesh(scene%mesh, cells, lower, upper, merge(brick, cells, brick > 0), spread(face == face_periodic, 1, 3), 2)
+    integer :: b, i, j, k, each(2, 3)
+    each = face
+    if (present(faces)) each = faces
+    chosen = scheme_type(muscl, venkatakrishnan, .false., .false.)
+    if (present(scheme)) chosen = scheme
+    call build_mesh(scene%mesh, cells, lower, upper, merge(brick, cells, brick > 0), each(1, :) == face_periodic, &
+      ghost_layers(chosen))
     call plan_halo(scene%mesh, scene%halo)
+    ! here: scene%flow%scheme = chosen
     call allocate_flow(scene%flow, scene%mesh, spread('gas', 1, size(eos)), eos)
-    scene%flow%face = face
+    scene%flow%face = each
     associate (n => scene%mesh%brick_cells)
       do b = 1, scene%mesh%n_local
         do k = 1, n(3)
@@ -68,7 +79,7 @@ contains
     do while (scene%time < end_time*(1 - 1e-12_wp))
       limit = flow_limit(scene%mesh, scene%flow)
       dt = min(limit%dt, end_time - scene%time)
-      call step(scene, dt)
+      call run_step(scene, dt)
     end do
   end subroutine run_until
 
@@ -80,11 +91,12 @@ contains
     integer :: i
     do i = 1, n
       limit = flow_limit(scene%mesh, scene%flow)
-      call step(scene, limit%dt)
+      call run_step(scene, limit%dt)
     end do
   end subroutine run_steps
 
-  subroutine step(scene, dt)
+  !> One step of a given length.
+  subroutine run_step(scene, dt)
     type(flow_scene), intent(inout) :: scene
     real(wp), intent(in) :: dt
     integer :: stage
@@ -94,7 +106,7 @@ contains
     call accept_step(scene%flow)
     scene%time = scene%time + dt
     scene%steps = scene%steps + 1
-  end subroutine step
+  end subroutine run_step
 
   !> One variable along direction d through the first cells of the other directions, on one rank.
   function row_of_cells(scene, d, row) result(values)
