@@ -108,7 +108,6 @@ contains
     real(wp), intent(out) :: state(:, :)
     type(density_wave_type) :: wave
     integer :: i
-    wave = density_wave_type(waves=[1.0_wp, 0.0_wp, 0.0_wp], velocity=[1.0_wp, 0.0_wp, 0.0_wp])
     do i = 1, size(x, 2)
       state(:, i) = wave%state(x(:, i)/(problem%upper - problem%lower), t)
     end do
@@ -178,6 +177,7 @@ contains
     type(problem_type), allocatable, intent(inout) :: list(:)
     integer, intent(in) :: d
     integer, parameter :: cells(3) = [200, 100, 48]
+    real(wp), parameter :: most_density(3) = [0.05_wp, 0.10_wp, 0.25_wp], most_pressure(3) = [0.03_wp, 0.06_wp, 0.15_wp]
     type(problem_type) :: problem
     problem%name = 'noh_'//'123'(d:d)
     problem%title = 'Noh''s implosion in '//'123'(d:d)//' dimensions (Noh 1987)'
@@ -193,7 +193,7 @@ contains
     problem%exact => noh_exact
     problem%measure => measure_noh
     problem%resolutions = cells(d)*[1, 2]/2
-    problem%bound = [bound('density', [0.05_wp, 0.10_wp, 0.25_wp](d)), bound('pressure', [0.03_wp, 0.06_wp, 0.15_wp](d))]
+    problem%bound = [bound('density', most_density(d)), bound('pressure', most_pressure(d))]
     call add_problem(list, problem)
   end subroutine add_noh
 
