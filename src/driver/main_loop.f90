@@ -56,6 +56,7 @@ contains
     integer :: stage
     left = scene%clock%dt
     scene%clock%flow_steps = 0
+    scene%flow%time = scene%clock%time
     do while (left > 0)
       call flow_part(scene, left, dt)
       if (scene%coupled) call force_first_state(scene%mesh, scene%flow, scene%coupling)
@@ -66,6 +67,7 @@ contains
         if (scene%coupled) call force_stage(scene%mesh, scene%flow, scene%coupling, stage)
       end do
       call accept_step(scene%flow)
+      scene%flow%time = scene%flow%time + dt
       scene%clock%flow_steps = scene%clock%flow_steps + 1
     end do
     scene%clock%n_flow_steps = scene%clock%n_flow_steps + scene%clock%flow_steps

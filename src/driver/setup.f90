@@ -1,7 +1,8 @@
 !> From the deck to a scene that is ready to run.
 module setup
   use deck, only: read_deck
-  use flow_initial, only: setup_flow
+  use flow_initial, only: setup_flow, flow_scheme_of
+  use flow_scheme, only: ghost_layers
   use halo, only: plan_halo
   use immersed_boundary, only: start_coupling, immerse_solid
   use kinds, only: wp
@@ -18,8 +19,6 @@ module setup
   implicit none
   private
   public :: read_scene, lay_out_scene, make_scene
-
-  integer, parameter :: ghost_layers = 2 !< of second-order reconstruction
 
 contains
 
@@ -39,12 +38,13 @@ contains
   subroutine lay_out_scene(scene)
     type(scene_type), intent(inout) :: scene
     logical :: periodic(3)
-    integer :: d
+    integer :: d, layers
     associate (deck => scene%deck)
+      layers = ghost_layers(flow_scheme_of(deck))
       periodic = [(trim(deck%boundary%flow_face(d, 1)) == 'periodic', d=1, 3)]
-      call build_mesh(scene%mesh, deck%mesh%cells, deck%mesh%lower, deck%mesh%upper, deck%mesh%brick, periodic, ghost_layers)
+      call build_mesh(scene%mesh, deck%mesh%cells, deck%mesh%lower, deck%mesh%upper, deck%mesh%brick, periodic, layers)
       if (deck%has_solid) call build_mesh(scene%mesh, deck%mesh%cells, deck%mesh%lower, deck%mesh%upper, deck%mesh%brick, &
-                                          periodic, ghost_layers, even_axes(deck, scene%mesh))
+                                          periodic, layers, even_axes(deck, scene%mesh))
       call assign_ranks(scene%mesh, brick_weights(deck, scene%mesh))
       scene%has_flow = deck%has_flow
       scene%has_solid = deck%has_solid

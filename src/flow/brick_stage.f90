@@ -1,11 +1,18 @@
 !> One Runge-Kutta stage of one brick in a single sweep over its rows of cells (x fastest): reconstruction, Riemann problems in the
 !> active directions, and the update, with no more in memory than a plane of z fluxes.
 module brick_stage
-  use kinds, only: wp
-  use equation_of_state, only: eos_type
+  use burn_release, only: release_energy
+  use face_states, only: flatten_next_to_closed, replace_near_closed, take_cell_values
+  use fifth_order_upwind, only: reconstruct_fifth_order, keep_below_one
+  use flow_differences, only: difference_fluxes, difference_radial_fluxes, add_gravity
   use flow_layout, only: layout_type
-  use reconstruction, only: reconstruct_venkatakrishnan, reconstruct_minmod, flatten_next_to_closed, minmod
+  use flow_scheme, only: scheme_type, fifth_order, third_order
+  use equation_of_state, only: eos_type
+  use interface_sharpening, only: sharpen_faces
+  use kinds, only: wp
+  use muscl, only: reconstruct_muscl
   use riemann, only: hllc_single, hllc_materials, close_faces
+  use shock_sensor, only: sense_shocks, dissipate_shear
   use update_materials, only: update_row, row_scratch, row_report
   use update_single, only: update_gas, update_stored_energy
   implicit none
@@ -18,13 +25,17 @@ module brick_stage
     real(wp) :: part = 1 !< new = start + part (from - start - d)
     real(wp) :: weight = 1 !< of this stage's fluxes in the whole step
     real(wp) :: dt = 0
+    real(wp) :: time(3) = 0 !< of the states start, from and new
     real(wp) :: spacing(3) = 1
     logical :: active(3) = [.true., .false., .false.]
-    integer :: limiter = 1
+    logical :: radial = .false. !< x is a radius
+    type(scheme_type) :: scheme
     real(wp) :: trace = 0 !< smallest volume fraction
     real(wp) :: floor_pressure = 0
     real(wp) :: lowest = 0 !< pressures at or below it are bad
     real(wp) :: gravity(3) = 0
+    real(wp), allocatable :: burn_energy(:) !< of each material, per mass; 0 where it does not burn
+    real(wp), allocatable :: burn_rate(:) !< one over the time that a cell takes to burn
   end type stage_type
 
   !> What a brick reports of a stage.
@@ -39,9 +50,13 @@ module brick_stage
     integer :: ld = 0
     real(wp), allocatable :: low(:, :), high(:, :) !< face values of a row of cells
     real(wp), allocatable :: y_high(:, :, :), z_high(:, :, :, :) !< upper face values kept for the next row and plane
+    real(wp), allocatable :: narrow_low(:, :), narrow_high(:, :) !< face values of a narrower reconstruction
     real(wp), allocatable :: flux_x(:, :), flux_y(:, :, :), flux_z(:, :, :, :)
     real(wp), allocatable :: d(:, :) !< what the fluxes take from each cell in a whole step
     real(wp), allocatable :: wave(:, :), partial(:, :), fractions(:, :), force(:)
+    real(wp), allocatable :: shock(:, :, :) !< sensor of the cells 0..n+1 of a row, in the rows of two planes
+    real(wp), allocatable :: strongest(:, :) !< of each row
+    real(wp), allocatable :: rate_low(:), rate_high(:) !< time step times area over volume at the faces across x
     type(row_scratch) :: row
   end type stage_scratch
 
@@ -64,7 +79,8 @@ contains
     ! ones, so that what lies beyond the cells of a row never traps
     allocate (s%low(ld, nr), s%high(ld, nr), s%y_high(ld, nr, 0:1), s%z_high(ld, nr, n(2), 0:1), s%flux_x(ld, nf), &
       s%flux_y(ld, nf, 0:1), s%flux_z(ld, nf, n(2), 0:1), s%d(ld, nf), s%wave(ld, 7), s%partial(ld, nm), &
-      s%fractions(ld, nm), s%force(ld), source=1.0_wp)
+      s%fractions(ld, nm), s%force(ld), s%narrow_low(ld, nr), s%narrow_high(ld, nr), s%rate_low(ld), s%rate_high(ld), source=1.0_wp)
+    allocate (s%shock(ld, 0:n(2) + 1, 0:1), s%strongest(0:n(2) + 1, 0:1), source=0.0_wp)
     allocate (s%row%m(ld, nm), s%row%a(ld, nm), s%row%e(ld, nm), s%row%a_from(ld, nm), s%row%e_from(ld, nm), &
       s%row%a_start(ld, nm), s%row%e_start(ld, nm), s%row%f(ld, nm), s%row%r_df(ld, nm), s%row%conserved(ld, 7), &
       s%row%relaxation(ld, 8), s%row%step(ld, nm), s%row%response(ld, nm), s%row%before(ld, nm), source=1.0_wp)
@@ -76,36 +92,55 @@ contains
   end subroutine clear_scratch
 
   !> Computes the new state of a brick. from: state that the fluxes belong to, ghosts filled; start: state at the start of the
-  !> step; n: cells; g: ghost layers; ld: length of a row; eps2: of the limiter, by variable. booked(quantity, face): what
-  !> enters the brick in the whole step
-  !> through its faces (x low, x high, y low, ...) is added there, for faces with at_face. open, impulse: only of bricks with closed
-  !> cells: 1 where open; the momentum that closed cells receive is added to the open cell beside them.
-  subroutine advance_brick(n, g, ld, layout, eos, stage, eps2, at_face, from, start, new, booked, s, report, open, impulse)
+  !> step; n: cells; g: ghost layers; ld: length of a row; eps2: of the limiter, by variable; positive: variables that must be so on
+  !> faces. booked(quantity, face): what enters the brick in the whole step through its faces (x low, x high, y low, ...) is added
+  !> there, for faces with at_face. area, volume: of the faces across x and of the cells of a row.
+  !> Optional, of bricks that have such cells: open: 1 where open, 0 where closed; impulse: the momentum that closed cells receive
+  !> is added to the open cell beside them; troubled: 1 where all fluxes are to be of first order; arrival: time at which a
+  !> detonation front passes.
+  subroutine advance_brick(n, g, ld, layout, eos, stage, eps2, positive, at_face, area, volume, from, start, new, booked, s, &
+    report, &
+      open, impulse, troubled, arrival)
     integer, intent(in) :: n(3), g(3), ld
     type(layout_type), intent(in) :: layout
     type(eos_type), intent(in) :: eos(layout%n_materials)
     type(stage_type), intent(in) :: stage
     real(wp), intent(in) :: eps2(layout%n_reconstructed)
+    logical, intent(in) :: positive(layout%n_reconstructed)
     logical, intent(in) :: at_face(6)
+    real(wp), intent(in) :: area(n(1) + 1), volume(n(1))
     real(wp), intent(in), dimension(1 - g(1):ld - g(1), layout%n_rows, 1 - g(2):n(2) + g(2), 1 - g(3):n(3) + g(3)) :: from, start
     real(wp), intent(inout) :: new(1 - g(1):ld - g(1), layout%n_rows, 1 - g(2):n(2) + g(2), 1 - g(3):n(3) + g(3))
     real(wp), intent(inout) :: booked(:, :)
     type(stage_scratch), intent(inout) :: s
     type(brick_report), intent(out) :: report
-    real(wp), intent(in), optional :: open(1 - g(1):ld - g(1), 1, 1 - g(2):n(2) + g(2), 1 - g(3):n(3) + g(3))
+    real(wp), intent(in), optional, dimension(1 - g(1):ld - g(1), 1, 1 - g(2):n(2) + g(2), 1 - g(3):n(3) + g(3)) :: open, &
+      troubled, &
+      arrival
     real(wp), intent(inout), optional :: impulse(1 - g(1):ld - g(1), 3, 1 - g(2):n(2) + g(2), 1 - g(3):n(3) + g(3))
-    real(wp) :: rate(3), weight(3)
-    integer :: j, k, cell_y, face_y, cell_z, face_z, c, x_cells, x_faces
+    real(wp) :: rate(3), weight(3), over_h(3)
+    integer :: j, k, cell_y, face_y, cell_z, face_z, c, x_cells, x_faces, stride(3), reach, back(3)
+    logical :: radial, cure
     c = layout%sound_speed_row
     ! along x whole vectors: the rows are padded
     x_cells = 4*((n(1) + 5)/4)
     x_faces = 4*((n(1) + 4)/4)
+    stride = merge([1, ld*layout%n_rows, ld*layout%n_rows*(n(2) + 2*g(2))], 0, stage%active)
+    reach = maxval(stride)
+    back = merge(1, 0, stride == reach) ! the neighbour that lies furthest back in memory
+    over_h = merge(1/stage%spacing, 0.0_wp, stage%active)
     rate = stage%dt/stage%spacing
     weight = stage%weight*stage%dt*product(stage%spacing)/stage%spacing
+    radial = stage%radial
+    s%rate_low(1:n(1)) = merge(stage%dt*area(1:n(1))/volume, rate(1), radial)
+    s%rate_high(1:n(1)) = merge(stage%dt*area(2:n(1) + 1)/volume, rate(1), radial)
+    cure = stage%scheme%cure_shocks .and. count(stage%active) > 1
+    if (cure) call sense_plane(1)
     ! two of each: which one is old changes from row to row and from plane to plane
     cell_z = 1
     face_z = 0
     if (stage%active(3)) then
+      if (cure) call sense_plane(0)
       do j = 1, n(2)
         call reconstruct_z(j, 0, s%z_high(1, 1, j, 0))
         call reconstruct_z(j, 1, s%z_high(1, 1, j, 1))
@@ -114,6 +149,7 @@ contains
       end do
     end if
     do k = 1, n(3)
+      if (cure .and. stage%active(3)) call sense_plane(k + 1)
       cell_y = 1
       face_y = 0
       if (stage%active(2)) then
@@ -135,11 +171,9 @@ contains
           call flux_across(n(1), 3, j, k, j, k + 1, 0, s%z_high(1, 1, j, cell_z), s%low, s%flux_z(1, 1, j, 1 - face_z))
           if (k == n(3)) call book(6, -1.0_wp, s%flux_z(:, :, j, 1 - face_z))
         end if
-        call differences(n(1), ld, layout%n_fluxes, count(stage%active), rate, s%flux_x, s%flux_y(1, 1, face_y), &
-          s%flux_y(1, 1, 1 - face_y), s%flux_z(1, 1, j, face_z), s%flux_z(1, 1, j, 1 - face_z), s%d)
+        call take_differences(j, k)
         cell_y = 1 - cell_y
         face_y = 1 - face_y
-        if (any(abs(stage%gravity) > 0)) call add_gravity(n(1), ld, layout, stage%dt, stage%gravity, from(1, 1, j, k), s%d)
         call update(j, k)
       end do
       if (stage%active(2)) call book(4, -1.0_wp, s%flux_y(:, :, face_y))
@@ -149,28 +183,36 @@ contains
 
   contains
 
+    !> Sensor of plane k; rows and planes of ghosts only as far as faces of the brick need them.
+    subroutine sense_plane(k)
+      integer, intent(in) :: k
+      integer :: j, edge, p, r
+      edge = merge(1, 0, k >= 1 .and. k <= n(3))
+      p = layout%pressure_row
+      r = layout%density_row
+      do j = 1 - edge, n(2) + edge
+        call sense_shocks(n(1) + 2, stride, reach, from(-back(1), p, j - back(2), k - back(3)), from(0, r, j, k), from(0, c, j, &
+          k), &
+          s%shock(1, j, modulo(k, 2)), s%strongest(j, modulo(k, 2)))
+      end do
+    end subroutine sense_plane
+
     !> Face values of the cells 0..n+1 of a row along it; cell i stands at i + 1.
     subroutine reconstruct_x(j, k)
       integer, intent(in) :: j, k
-      call reconstruct(x_cells, from(-1, 1, j, k), from(0, 1, j, k), from(1, 1, j, k), s%low, s%high)
-      if (present(open)) call flatten_next_to_closed(x_cells, ld, layout%n_reconstructed, from(0, 1, j, k), &
-        open(-1, 1, j, k), open(0, 1, j, k), open(1, 1, j, k), s%low, s%high)
+      call reconstruct(x_cells, 1, 0, j, k, s%low, s%high)
     end subroutine reconstruct_x
 
     subroutine reconstruct_y(j, k, high)
       integer, intent(in) :: j, k
       real(wp), intent(inout) :: high(ld, *)
-      call reconstruct(whole(n(1)), from(1, 1, j - 1, k), from(1, 1, j, k), from(1, 1, j + 1, k), s%low, high)
-      if (present(open)) call flatten_next_to_closed(n(1), ld, layout%n_reconstructed, from(1, 1, j, k), &
-        open(1, 1, j - 1, k), open(1, 1, j, k), open(1, 1, j + 1, k), s%low, high)
+      call reconstruct(whole(n(1)), 2, 1, j, k, s%low, high)
     end subroutine reconstruct_y
 
     subroutine reconstruct_z(j, k, high)
       integer, intent(in) :: j, k
       real(wp), intent(inout) :: high(ld, *)
-      call reconstruct(whole(n(1)), from(1, 1, j, k - 1), from(1, 1, j, k), from(1, 1, j, k + 1), s%low, high)
-      if (present(open)) call flatten_next_to_closed(n(1), ld, layout%n_reconstructed, from(1, 1, j, k), &
-        open(1, 1, j, k - 1), open(1, 1, j, k), open(1, 1, j, k + 1), s%low, high)
+      call reconstruct(whole(n(1)), 3, 1, j, k, s%low, high)
     end subroutine reconstruct_z
 
     !> A row in whole vectors: what lies behind its cells is ghosts and padding, whose face values nobody reads.
@@ -180,25 +222,50 @@ contains
       whole = min(vector*((n_cells + vector - 1)/vector), ld - 2*g(1) - 1)
     end function whole
 
-    subroutine reconstruct(n_cells, below, here, above, low, high)
-      integer, intent(in) :: n_cells
-      real(wp), intent(in) :: below(ld, *), here(ld, *), above(ld, *)
+    !> Face values in one direction of the row (j, k) from cell i on.
+    subroutine reconstruct(n_cells, direction, i, j, k, low, high)
+      integer, intent(in) :: n_cells, direction, i, j, k
       real(wp), intent(inout) :: low(ld, *), high(ld, *)
-      if (stage%limiter == minmod) then
-        call reconstruct_minmod(n_cells, ld, layout%n_reconstructed, below, here, above, low, high)
-      else
-        call reconstruct_venkatakrishnan(n_cells, ld, layout%n_reconstructed, eps2, below, here, above, low, high)
-      end if
+      integer :: one(3), v, nr
+      one = merge(1, 0, [1, 2, 3] == direction)
+      nr = layout%n_reconstructed
+      associate (s1 => stride(direction))
+        if (stage%scheme%reconstruction == fifth_order) then
+          call reconstruct_fifth_order(n_cells, ld, nr, s1, positive, from(i - 2*one(1), 1, j - 2*one(2), k - 2*one(3)), low, high)
+          v = layout%fraction(1)
+          if (layout%n_materials == 2) call keep_below_one(n_cells, from(i, v, j, k), low(1, v), high(1, v))
+        else
+          call reconstruct_muscl(stage%scheme%limiter, n_cells, ld, nr, s1, eps2, from(i - one(1), 1, j - one(2), k - one(3)), &
+            low, high)
+        end if
+        if (stage%scheme%sharpen .and. layout%n_materials > 1) call sharpen_faces(n_cells, ld, layout, stride, over_h, direction, &
+          reach, from(i - back(1), 1, j - back(2), k - back(3)), low, high, s%partial, s%fractions, s%force)
+        if (.not. present(open)) return
+        if (stage%scheme%reconstruction == fifth_order) then
+          call reconstruct_muscl(third_order, n_cells, ld, nr, s1, eps2, from(i - one(1), 1, j - one(2), k - one(3)), &
+            s%narrow_low, &
+            s%narrow_high)
+          call replace_near_closed(n_cells, ld, nr, open(i - 2*one(1), 1, j - 2*one(2), k - 2*one(3)), &
+            open(i + 2*one(1), 1, j + 2*one(2), k + 2*one(3)), s%narrow_low, s%narrow_high, low, high)
+        end if
+        call flatten_next_to_closed(n_cells, ld, nr, from(i, 1, j, k), open(i - one(1), 1, j - one(2), k - one(3)), open(i, 1, &
+          j, k), &
+          open(i + one(1), 1, j + one(2), k + one(3)), low, high)
+      end associate
     end subroutine reconstruct
 
     !> Fluxes from the row of cells (jl, kl) to the row (jr, kr); back: 1 where the left cells are the same row, one cell back.
     subroutine flux_across(n_faces, direction, jl, kl, jr, kr, back, left, right, flux)
       integer, intent(in) :: n_faces, direction, jl, kl, jr, kr, back
-      real(wp), intent(in) :: left(ld, *), right(ld, *)
+      real(wp), intent(inout) :: left(ld, *), right(ld, *)
       real(wp), intent(inout) :: flux(ld, *)
       integer, parameter :: turn(3, 3) = reshape([1, 2, 3, 2, 3, 1, 3, 1, 2], [3, 3])
-      integer :: normal(3), p, i
+      integer :: normal(3), first, p
       normal = layout%velocity_row - 1 + turn(:, direction)
+      first = layout%momentum_flux - layout%velocity_row
+      p = layout%pressure_row
+      if (present(troubled)) call take_cell_values(n_faces, ld, layout%n_reconstructed, troubled(1 - back, 1, jl, kl), &
+        troubled(1, 1, jr, kr), from(1 - back, 1, jl, kl), from(1, 1, jr, kr), left, right)
       if (layout%n_materials == 1) then
         call hllc_single(n_faces, ld, layout, eos(1), normal, left, from(1 - back, c, jl, kl), right, from(1, c, jr, kr), flux, &
           s%wave)
@@ -206,7 +273,22 @@ contains
         call hllc_materials(n_faces, ld, layout%n_materials, layout, eos, normal, left, from(1 - back, c, jl, kl), &
           right, from(1, c, jr, kr), flux, s%wave, s%partial, s%fractions)
       end if
-      if (.not. present(open)) return
+      if (cure) then
+        if (max(s%strongest(jl, modulo(kl, 2)), s%strongest(jr, modulo(kr, 2))) > 0) then
+          if (layout%n_materials == 1) s%wave(:n_faces, 5) = flux(:n_faces, 1)
+          call dissipate_shear(n_faces, ld, layout%density_row, normal(1), normal(2), normal(3), p, normal(2) + first, &
+            normal(3) + first, layout%energy_flux, left, from(1 - back, c, jl, kl), s%shock(2 - back, jl, modulo(kl, 2)), &
+            right, from(1, c, jr, kr), s%shock(2, jr, modulo(kr, 2)), s%wave(1, 5), flux)
+        end if
+      end if
+      if (present(open)) call close_row(n_faces, direction, jl, kl, jr, kr, back, flux)
+    end subroutine flux_across
+
+    !> Makes walls of the faces of closed cells, and notes the momentum that these receive.
+    subroutine close_row(n_faces, direction, jl, kl, jr, kr, back, flux)
+      integer, intent(in) :: n_faces, direction, jl, kl, jr, kr, back
+      real(wp), intent(inout) :: flux(ld, *)
+      integer :: p, i
       p = layout%pressure_row
       call close_faces(n_faces, ld, layout%n_fluxes, layout%momentum_flux + direction - 1, open(1 - back, 1, jl, kl), &
         from(1 - back, p, jl, kl), open(1, 1, jr, kr), from(1, p, jr, kr), flux, s%force)
@@ -217,7 +299,35 @@ contains
           impulse(i, direction, jr, kr) = impulse(i, direction, jr, kr) + weight(direction)*s%force(i)
         end if
       end do
-    end subroutine flux_across
+    end subroutine close_row
+
+    !> What fluxes, gravity and the energy of burning explosive take from the cells of row (j, k).
+    subroutine take_differences(j, k)
+      integer, intent(in) :: j, k
+      integer :: m, e
+      if (radial) then
+        call difference_radial_fluxes(n(1), ld, layout%n_fluxes, count(stage%active), layout%momentum_flux, s%rate_low, &
+          s%rate_high, &
+          rate, from(1, layout%pressure_row, j, k), s%flux_x, s%flux_y(1, 1, face_y), s%flux_y(1, 1, 1 - face_y), s%d)
+      else
+        call difference_fluxes(n(1), ld, layout%n_fluxes, count(stage%active), rate, s%flux_x, s%flux_y(1, 1, face_y), &
+          s%flux_y(1, 1, 1 - face_y), s%flux_z(1, 1, j, face_z), s%flux_z(1, 1, j, 1 - face_z), s%d)
+      end if
+      if (any(abs(stage%gravity) > 0)) call add_gravity(n(1), ld, layout, stage%dt, stage%gravity, from(1, 1, j, k), s%d)
+      if (.not. present(arrival)) return
+      do m = 1, layout%n_materials
+        if (.not. stage%burn_energy(m) > 0) cycle
+        e = layout%energy_flux
+        if (layout%n_materials > 1) e = layout%first_material_energy_flux + m - 1
+        call release_energy(n(1), stage%part, stage%time, stage%burn_energy(m), stage%burn_rate(m), stride, reach, &
+          arrival(1 - back(1), 1, j - back(2), k - back(3)), from(1, m, j, k), start(1, m, j, k), s%d(1, m), s%rate_low, &
+          s%rate_high, &
+          rate, s%flux_x(1, m), s%flux_y(1, m, face_y), s%flux_y(1, m, 1 - face_y), s%flux_z(1, m, j, face_z), &
+          s%flux_z(1, m, j, 1 - face_z), s%force)
+        s%d(1:n(1), e) = s%d(1:n(1), e) - s%force(1:n(1))
+        if (layout%n_materials > 1) s%d(1:n(1), layout%energy_flux) = s%d(1:n(1), layout%energy_flux) - s%force(1:n(1))
+      end do
+    end subroutine take_differences
 
     subroutine update(j, k)
       integer, intent(in) :: j, k
@@ -250,66 +360,30 @@ contains
       integer, intent(in) :: face
       real(wp), intent(in) :: sign, flux(:, :)
       integer :: q
+      real(wp) :: sum_of_fluxes
       if (.not. at_face(face)) return
       do q = 1, layout%n_conserved
-        booked(q, face) = booked(q, face) + sign*weight((face + 1)/2)*sum(flux(1:n(1), q))
+        if (radial) then
+          sum_of_fluxes = sum(flux(1:n(1), q)*volume)/product(stage%spacing)
+        else
+          sum_of_fluxes = sum(flux(1:n(1), q))
+        end if
+        booked(q, face) = booked(q, face) + sign*weight((face + 1)/2)*sum_of_fluxes
       end do
     end subroutine book
 
     subroutine book_ends(flux)
       real(wp), intent(in) :: flux(:, :)
       integer :: q
+      real(wp) :: low, high
+      low = merge(stage%weight*stage%dt*area(1), weight(1), radial)
+      high = merge(stage%weight*stage%dt*area(n(1) + 1), weight(1), radial)
       do q = 1, layout%n_conserved
-        if (at_face(1)) booked(q, 1) = booked(q, 1) + weight(1)*flux(1, q)
-        if (at_face(2)) booked(q, 2) = booked(q, 2) - weight(1)*flux(n(1) + 1, q)
+        if (at_face(1)) booked(q, 1) = booked(q, 1) + low*flux(1, q)
+        if (at_face(2)) booked(q, 2) = booked(q, 2) - high*flux(n(1) + 1, q)
       end do
     end subroutine book_ends
 
   end subroutine advance_brick
-
-  !> What the fluxes of the active directions take from a row of cells in a whole step.
-  pure subroutine differences(n, ld, n_fluxes, dimensions, rate, x, y_low, y_high, z_low, z_high, d)
-    integer, intent(in) :: n, ld, n_fluxes, dimensions
-    real(wp), intent(in) :: rate(3)
-    real(wp), intent(in), dimension(ld, n_fluxes) :: x, y_low, y_high, z_low, z_high
-    real(wp), intent(inout) :: d(ld, n_fluxes)
-    integer :: i, v
-    do v = 1, n_fluxes
-      select case (dimensions)
-      case (1)
-        !$omp simd
-        do i = 1, n
-          d(i, v) = rate(1)*(x(i + 1, v) - x(i, v))
-        end do
-      case (2)
-        !$omp simd
-        do i = 1, n
-          d(i, v) = rate(1)*(x(i + 1, v) - x(i, v)) + rate(2)*(y_high(i, v) - y_low(i, v))
-        end do
-      case (3)
-        !$omp simd
-        do i = 1, n
-          d(i, v) = rate(1)*(x(i + 1, v) - x(i, v)) + rate(2)*(y_high(i, v) - y_low(i, v)) &
-            + rate(3)*(z_high(i, v) - z_low(i, v))
-        end do
-      end select
-    end do
-  end subroutine differences
-
-  !> Momentum and work of gravity.
-  pure subroutine add_gravity(n, ld, layout, dt, gravity, from, d)
-    integer, intent(in) :: n, ld
-    type(layout_type), intent(in) :: layout
-    real(wp), intent(in) :: dt, gravity(3), from(ld, *)
-    real(wp), intent(inout) :: d(ld, *)
-    integer :: i, q, r, u, m, e
-    r = layout%density_row; u = layout%velocity_row - 1; m = layout%momentum_flux - 1; e = layout%energy_flux
-    do q = 1, 3
-      do i = 1, n
-        d(i, m + q) = d(i, m + q) - dt*gravity(q)*from(i, r)
-        d(i, e) = d(i, e) - dt*gravity(q)*from(i, r)*from(i, u + q)
-      end do
-    end do
-  end subroutine add_gravity
 
 end module brick_stage

@@ -6,6 +6,7 @@ module flow_initial
   use eos_check, only: check_eos, shocked_density
   use errors, only: fatal, warn, exit_bad_input
   use flow_filling, only: filling_type, share_of_regions, mixed_cell, trace_density, halvings_for
+  use flow_scheme, only: scheme_type, scheme_from_words
   use flow_shapes, only: filled_shape, volume_in_box, shape_all, shape_box, shape_sphere, shape_cylinder, shape_half_space
   use flow_state, only: flow_type, allocate_flow, set_inflow, face_outflow, face_symmetry, face_inflow, face_periodic
   use kinds, only: wp
@@ -13,12 +14,11 @@ module flow_initial
   use material_eos, only: eos_of
   use mesh, only: mesh_type
   use mixture, only: cell_from
-  use reconstruction, only: venkatakrishnan, minmod
   use reductions, only: reduce_sum, reduce_min
   use text, only: str, lowercase
   implicit none
   private
-  public :: setup_flow
+  public :: setup_flow, flow_scheme_of
 
   real(wp), parameter :: mass_tolerance = 1e-3_wp !< of a placed charge
 
@@ -44,9 +44,9 @@ contains
     end do
     call allocate_flow(flow, mesh, name, eos)
     flow%cfl = deck%flow%cfl
+    flow%scheme = flow_scheme_of(deck)
     flow%trace_fraction = merge(deck%flow%trace_fraction, 0.0_wp, size(used) > 1)
     flow%gravity = merge(deck%flow%gravity, 0.0_wp, mesh%active)
-    flow%limiter = merge(minmod, venkatakrishnan, lowercase(trim(deck%flow%limiter)) == 'minmod')
     call set_faces(deck, flow)
     filling = fillings(mesh, deck, used)
     call reference_states(flow, filling, density, pressure)
@@ -59,6 +59,14 @@ contains
     if (any(flow%face == face_inflow)) call prepare_inflow(deck, flow, used, density, pressure)
     call set_noise(mesh, flow)
   end subroutine setup_flow
+
+  !> The scheme that the deck asks for.
+  pure function flow_scheme_of(deck) result(scheme)
+    type(deck_type), intent(in) :: deck
+    type(scheme_type) :: scheme
+    scheme = scheme_from_words(lowercase(trim(deck%flow%reconstruction)), lowercase(trim(deck%flow%limiter)), &
+      lowercase(trim(deck%flow%interface)), lowercase(trim(deck%flow%shocks)))
+  end function flow_scheme_of
 
   !> Deck indices of the materials of the flow, in the order of the deck.
   subroutine list_materials(deck, used)

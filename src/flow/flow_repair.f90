@@ -1,16 +1,86 @@
-!> Cells whose new state is no state: lifted where that can be done and counted, fatal where not.
+!> Cells whose new state is no state: marked, so that their stage is redone with first-order fluxes; if that does not help lifted
+!> where that can be done and counted, fatal where not.
 module flow_repair
+  use blocks, only: block, allocate_cells
   use errors, only: fatal
-  use flow_state, only: flow_type, repair_low_pressure
+  use flow_state, only: flow_type, repair_low_pressure, repair_first_order
+  use halo, only: halo_type, fill
   use kinds, only: wp
   use mesh, only: mesh_type
+  use material_rows, only: smallest_mass
   use mixture, only: close_cell
   use text, only: str
   implicit none
   private
-  public :: repair_brick, count_repair, cell_centre
+  public :: repair_brick, count_repair, cell_centre, mark_troubled, none_troubled, troubled_around
 
 contains
+
+  !> Marks the troubled cells of a buffer, on all bricks and in their ghosts. suspect: local bricks that have some; is_new: some
+  !> were not marked before. All ranks take part.
+  subroutine mark_troubled(mesh, halo, flow, buffer, suspect, is_new)
+    type(mesh_type), intent(in) :: mesh
+    type(halo_type), intent(inout) :: halo
+    type(flow_type), intent(inout) :: flow
+    integer, intent(in) :: buffer
+    logical, intent(in) :: suspect(:)
+    logical, intent(out) :: is_new
+    real(wp) :: lowest
+    integer :: b, i, j, k
+    is_new = .false.
+    lowest = flow%lowest_pressure()
+    do b = 1, mesh%n_local
+      if (.not. allocated(flow%troubled(b)%a)) call allocate_cells(flow%troubled(b), mesh%brick_cells, mesh%ghost, 1, 0.0_wp)
+      if (.not. suspect(b)) cycle
+      do k = 1, mesh%brick_cells(3)
+        do j = 1, mesh%brick_cells(2)
+          do i = 1, mesh%brick_cells(1)
+            if (is_closed(flow, b, i, j, k) .or. flow%troubled(b)%a(i, 1, j, k) > 0) cycle
+            associate (cell => flow%w(b, buffer)%a(i, :, j, k))
+              if (good(flow, cell, lowest) .and. (flow%n_materials == 1 .or. all(cell(:flow%n_materials) > smallest_mass))) cycle
+            end associate
+            flow%troubled(b)%a(i, 1, j, k) = 1
+            is_new = .true.
+            call count_repair(mesh, flow, repair_first_order, 1, b, [i, j, k])
+          end do
+        end do
+      end do
+    end do
+    call fill(mesh, halo, flow%troubled, 1, only_faces=.true.)
+  end subroutine mark_troubled
+
+  !> True if a brick or the cells around it hold marked cells.
+  pure logical function troubled_around(troubled)
+    type(block), intent(in) :: troubled
+    troubled_around = any(troubled%a > 0)
+  end function troubled_around
+
+  !> Takes all marks away.
+  subroutine none_troubled(flow)
+    type(flow_type), intent(inout) :: flow
+    integer :: b
+    do b = 1, size(flow%troubled)
+      if (allocated(flow%troubled(b)%a)) deallocate (flow%troubled(b)%a)
+    end do
+  end subroutine none_troubled
+
+  pure logical function is_closed(flow, b, i, j, k)
+    type(flow_type), intent(in) :: flow
+    integer, intent(in) :: b, i, j, k
+    is_closed = .false.
+    if (allocated(flow%open(b)%a)) is_closed = .not. flow%open(b)%a(i, 1, j, k) > 0
+  end function is_closed
+
+  !> Pressure above the lowest one, sound speed a positive number.
+  pure logical function good(flow, cell, lowest)
+    type(flow_type), intent(in) :: flow
+    real(wp), intent(in) :: cell(:), lowest
+    associate (p => cell(flow%layout%pressure_row), c => cell(flow%layout%sound_speed_row))
+      good = p > lowest .and. c > 0 .and. c <= huge(1.0_wp)
+    end associate
+    ! the sound speed is stored as the root of the absolute square
+    if (good) good = cell(flow%layout%density_row) > 0
+  end function good
 
   !> Looks for bad cells of local brick b in a buffer. A pressure that is finite but not above its lowest value is lifted to it, and
   !> the energy that this adds is left to show in the balance; anything else ends the run with the cell and its neighbours.
@@ -24,27 +94,20 @@ contains
     do k = 1, mesh%brick_cells(3)
       do j = 1, mesh%brick_cells(2)
         do i = 1, mesh%brick_cells(1)
-          if (allocated(flow%open(b)%a)) then
-            if (.not. flow%open(b)%a(i, 1, j, k) > 0) cycle
-          end if
+          if (is_closed(flow, b, i, j, k)) cycle
           cell = flow%w(b, buffer)%a(i, :, j, k)
-          if (good(cell(flow%layout%pressure_row), cell(flow%layout%sound_speed_row))) cycle
+          if (good(flow, cell, lowest)) cycle
           if (all(abs(cell) <= huge(1.0_wp)) .and. cell(flow%layout%density_row) > 0) then
             cell(flow%layout%pressure_row) = max(cell(flow%layout%pressure_row), lowest + flow%floor_pressure)
             call close_cell(flow%layout, flow%eos, cell)
           end if
-          if (.not. good(cell(flow%layout%pressure_row), cell(flow%layout%sound_speed_row))) &
+          if (.not. good(flow, cell, lowest)) &
             call fatal(description(mesh, flow, b, buffer, [i, j, k]))
           flow%w(b, buffer)%a(i, :, j, k) = cell
           call count_repair(mesh, flow, repair_low_pressure, 1, b, [i, j, k])
         end do
       end do
     end do
-  contains
-    pure logical function good(p, c)
-      real(wp), intent(in) :: p, c
-      good = p > lowest .and. c > 0 .and. c <= huge(1.0_wp)
-    end function good
   end subroutine repair_brick
 
   !> Adds to the count of a kind of repair. cell: the last cell concerned, of local brick b.

@@ -4,9 +4,9 @@ module flow_state
   use brick_stage, only: stage_scratch
   use equation_of_state, only: eos_type
   use flow_layout, only: layout_type, new_layout
+  use flow_scheme, only: scheme_type
   use kinds, only: wp, i8
   use mesh, only: mesh_type
-  use reconstruction, only: venkatakrishnan
   implicit none
   private
   public :: allocate_flow, set_inflow
@@ -15,13 +15,14 @@ module flow_state
 
   !> Kinds of repair that are counted.
   integer, parameter, public :: repair_negative_mass = 1, repair_clipped_fraction = 2, repair_relaxation = 3, &
-    repair_low_pressure = 4, n_repairs = 4
+    repair_low_pressure = 4, repair_first_order = 5, n_repairs = 5
   character(28), parameter, public :: repair_names(n_repairs) = [character(28) :: 'negative mass set to nil', &
-    'volume fraction clipped', 'relaxation by bisection', 'pressure lifted to its floor']
+    'volume fraction clipped', 'relaxation by bisection', 'pressure lifted to its floor', 'redone in first order']
 
   real(wp), parameter :: no_noise = 1e-100_wp !< eps**2 that does no more than keep 0/0 away
 
-  !> Counts of this rank. Only relaxation by bisection leaves the answer as it should be; the others change it.
+  !> Counts of this rank. Relaxation by bisection leaves the answer as it is; cells redone in first order keep all that is
+  !> conserved; the others change it.
   type, public :: repair_log
     integer(i8) :: count(n_repairs) = 0
     real(wp) :: position(3, n_repairs) = 0 !< centre of the last cell repaired
@@ -34,16 +35,24 @@ module flow_state
     type(layout_type) :: layout
     type(block), allocatable :: w(:, :) !< state: local brick, buffer 1..3
     integer :: current = 1 !< buffer of the state at the start of the step
-    integer :: limiter = venkatakrishnan
+    type(scheme_type) :: scheme
     real(wp), allocatable :: eps2(:) !< square of the limiter's eps for each reconstructed row, in the row's units
+    logical, allocatable :: positive(:) !< reconstructed rows whose face values must be so
     real(wp) :: cfl = 0.8_wp !< of the sum over directions
     real(wp) :: trace_fraction = 1e-8_wp !< smallest volume fraction of a material
     real(wp) :: floor_pressure = 1e-30_wp !< smallest distance from a gas's lowest pressure
+    real(wp) :: time = 0 !< at the start of the step
     real(wp) :: gravity(3) = 0
     integer :: face(2, 3) = face_outflow !< condition at the low and high face of each direction
     real(wp), allocatable :: inflow(:) !< rows of the state that enters
     type(block), allocatable :: open(:) !< 1 flows, 0 closed; allocated only in bricks with closed cells; ghosts filled
     type(block), allocatable :: wall_impulse(:) !< momentum (3) given to closed cells, in the open cell beside them; with open
+    type(block), allocatable :: troubled(:) !< 1 where a stage is redone with first-order fluxes; allocated while that goes on
+    type(block), &
+      allocatable :: arrival(:) !< of the detonation front; allocated in bricks that hold explosive still to burn; with ghosts
+    real(wp), allocatable :: burn_energy(:), burn_rate(:) !< of each material: see burn_release
+    real(wp) :: burn_speed = 0 !< fastest front, 0 when all has burnt
+    real(wp) :: burn_end = 0 !< time at which all has burnt
     real(wp), allocatable :: books(:, :, :) !< what entered: conserved quantity, face (x low, x high, ...), local brick
     type(repair_log) :: repairs
     type(stage_scratch) :: scratch
@@ -66,8 +75,16 @@ contains
     flow%name = name
     flow%eos = eos
     flow%layout = new_layout(eos)
-    allocate (flow%w(mesh%n_local, 3), flow%open(mesh%n_local), flow%wall_impulse(mesh%n_local))
+    allocate (flow%w(mesh%n_local, 3), flow%open(mesh%n_local), flow%wall_impulse(mesh%n_local), &
+      flow%troubled(mesh%n_local), flow%arrival(mesh%n_local))
     allocate (flow%eps2(flow%layout%n_reconstructed), source=no_noise)
+    allocate (flow%positive(flow%layout%n_reconstructed), source=.true.)
+    flow%positive(flow%layout%velocity_row:flow%layout%velocity_row + 2) = .false.
+    flow%positive(flow%layout%pressure_row) = .not. flow%lowest_pressure() < 0
+    do b = 1, size(eos)
+      if (flow%layout%energy_row(b) > 0) flow%positive(flow%layout%energy_row(b)) = .false.
+    end do
+    allocate (flow%burn_energy(size(eos)), flow%burn_rate(size(eos)), source=0.0_wp)
     allocate (flow%books(flow%layout%n_conserved, 6, mesh%n_local), source=0.0_wp)
     do buffer = 1, 3
       do b = 1, mesh%n_local

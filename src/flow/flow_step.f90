@@ -1,23 +1,36 @@
 !> One time step of the flow: three stages of the strong-stability-preserving Runge-Kutta scheme of Shu and Osher.
 !> The coupling may change velocities in the buffer that a stage wrote: the next stage starts from what it finds there.
 module flow_step
+  use blocks, only: block
   use brick_stage, only: advance_brick, prepare_scratch, stage_type, brick_report
   use flow_boundary, only: fill_boundary
-  use flow_repair, only: repair_brick, count_repair
+  use flow_repair, only: repair_brick, count_repair, mark_troubled, none_troubled, troubled_around
   use flow_state, only: flow_type, repair_negative_mass, repair_clipped_fraction, repair_relaxation
+  use geometry, only: cell_volumes, x_face_areas
   use halo, only: halo_type, fill
   use kinds, only: wp
   use mesh, only: mesh_type
+  use reductions, only: any_rank
   implicit none
   private
   public :: advance_stage, accept_step, fill_ghosts
 
   real(wp), parameter :: part(3) = [1.0_wp, 0.25_wp, 2.0_wp/3.0_wp] !< new = start + part (from - start - d)
   real(wp), parameter, public :: stage_weight(3) = [1.0_wp/6.0_wp, 1.0_wp/6.0_wp, 2.0_wp/3.0_wp] !< of a stage's fluxes in the step
+  real(wp), parameter :: stage_time(0:3) = [0.0_wp, 1.0_wp, 0.5_wp, 1.0_wp] !< of the state that a stage makes, in steps
+  integer, parameter :: most_attempts = 4 !< at a stage that leaves troubled cells
+
+  !> What a stage has added to before it turns out that it must be redone.
+  type :: books_type
+    real(wp), allocatable :: entered(:, :, :)
+    type(block), allocatable :: wall_impulse(:)
+  end type books_type
 
 contains
 
-  !> Stage 1, 2 or 3 of a step of length dt on all bricks of this rank.
+  !> Stage 1, 2 or 3 of a step of length dt on all bricks of this rank. Cells that get a negative mass, pressure or square of the
+  !> sound speed are troubled: the stage is redone in their bricks with first-order fluxes at all their faces, on both sides
+  !> alike, so nothing is lost. What is still bad after that is repaired.
   subroutine advance_stage(mesh, halo, flow, stage, dt)
     type(mesh_type), intent(in) :: mesh
     type(halo_type), intent(inout) :: halo
@@ -25,15 +38,36 @@ contains
     integer, intent(in) :: stage
     real(wp), intent(in) :: dt
     type(stage_type) :: plan
-    integer :: b, from
+    type(books_type) :: books
+    type(brick_report) :: report(mesh%n_local)
+    logical :: is_new
+    integer :: b, from, attempt
     from = flow%current
     if (stage > 1) from = flow%target(stage - 1)
     call fill_ghosts(mesh, halo, flow, from)
-    plan = stage_type(stage == 1, part(stage), stage_weight(stage), dt, mesh%spacing, mesh%active, flow%limiter, &
-      flow%trace_fraction, flow%floor_pressure, flow%lowest_pressure(), flow%gravity)
+    plan = stage_plan(mesh, flow, stage, dt)
     if (mesh%n_local > 0) call prepare_scratch(flow%scratch, flow%layout, mesh%brick_cells, size(flow%w(1, 1)%a, 1))
+    call keep_books(flow, books)
     do b = 1, mesh%n_local
-      call advance_one(mesh, flow, plan, b, from, flow%current, flow%target(stage))
+      call advance_one(mesh, flow, plan, b, from, flow%current, flow%target(stage), report(b))
+    end do
+    do attempt = 1, most_attempts
+      if (.not. any_rank(any(report%bad + report%negative_masses > 0))) exit
+      call mark_troubled(mesh, halo, flow, flow%target(stage), report%bad + report%negative_masses > 0, is_new)
+      if (.not. any_rank(is_new)) exit
+      do b = 1, mesh%n_local
+        if (.not. troubled_around(flow%troubled(b))) cycle
+        flow%books(:, :, b) = books%entered(:, :, b)
+        if (allocated(books%wall_impulse(b)%a)) flow%wall_impulse(b)%a = books%wall_impulse(b)%a
+        call advance_one(mesh, flow, plan, b, from, flow%current, flow%target(stage), report(b))
+      end do
+    end do
+    call none_troubled(flow)
+    do b = 1, mesh%n_local
+      call count_repair(mesh, flow, repair_negative_mass, report(b)%negative_masses, b, report(b)%repaired)
+      call count_repair(mesh, flow, repair_clipped_fraction, report(b)%clipped_fractions, b, report(b)%repaired)
+      call count_repair(mesh, flow, repair_relaxation, report(b)%fallbacks, b, report(b)%repaired)
+      if (report(b)%bad > 0) call repair_brick(mesh, flow, b, flow%target(stage))
     end do
   end subroutine advance_stage
 
@@ -43,41 +77,67 @@ contains
     flow%current = flow%target(3)
   end subroutine accept_step
 
-  !> Ghost cells of one buffer, from neighbours and from the boundary conditions.
+  !> Ghost cells of one buffer, from neighbours and from the boundary conditions. What looks across the direction of a sweep needs
+  !> those beyond the edges of bricks too.
   subroutine fill_ghosts(mesh, halo, flow, buffer)
     type(mesh_type), intent(in) :: mesh
     type(halo_type), intent(inout) :: halo
     type(flow_type), intent(inout) :: flow
     integer, intent(in) :: buffer
+    logical :: only_faces
     integer :: b
-    call fill(mesh, halo, flow%w(:, buffer), flow%layout%n_rows, only_faces=.true.)
+    only_faces = .not. (flow%scheme%cure_shocks .or. (flow%scheme%sharpen .and. flow%n_materials > 1))
+    call fill(mesh, halo, flow%w(:, buffer), flow%layout%n_rows, only_faces)
     do b = 1, mesh%n_local
       call fill_boundary(mesh, flow, b, buffer)
     end do
   end subroutine fill_ghosts
 
-  subroutine advance_one(mesh, flow, plan, b, from, start, new)
+  !> What all bricks need to know of a stage.
+  function stage_plan(mesh, flow, stage, dt) result(plan)
+    type(mesh_type), intent(in) :: mesh
+    type(flow_type), intent(in) :: flow
+    integer, intent(in) :: stage
+    real(wp), intent(in) :: dt
+    type(stage_type) :: plan
+    plan%first = stage == 1
+    plan%part = part(stage)
+    plan%weight = stage_weight(stage)
+    plan%dt = dt
+    plan%time = flow%time + [0.0_wp, dt*stage_time(stage - 1), dt*stage_time(stage)]
+    plan%spacing = mesh%spacing
+    plan%active = mesh%active
+    plan%radial = mesh%radial_power > 0
+    plan%scheme = flow%scheme
+    plan%trace = flow%trace_fraction
+    plan%floor_pressure = flow%floor_pressure
+    plan%lowest = flow%lowest_pressure()
+    plan%gravity = flow%gravity
+    plan%burn_energy = flow%burn_energy
+    plan%burn_rate = flow%burn_rate
+  end function stage_plan
+
+  subroutine keep_books(flow, books)
+    type(flow_type), intent(in) :: flow
+    type(books_type), intent(out) :: books
+    books%entered = flow%books
+    books%wall_impulse = flow%wall_impulse
+  end subroutine keep_books
+
+  subroutine advance_one(mesh, flow, plan, b, from, start, new, report)
     type(mesh_type), intent(in) :: mesh
     type(flow_type), intent(inout) :: flow
     type(stage_type), intent(in) :: plan
     integer, intent(in) :: b, from, start, new
-    type(brick_report) :: report
+    type(brick_report), intent(out) :: report
     logical :: at_face(6)
-    integer :: ld
-    ld = size(flow%w(b, 1)%a, 1)
     at_face(1::2) = mesh%brick(mesh%local(b))%at_low .and. mesh%active
     at_face(2::2) = mesh%brick(mesh%local(b))%at_high .and. mesh%active
-    if (allocated(flow%open(b)%a)) then
-      call advance_brick(mesh%brick_cells, mesh%ghost, ld, flow%layout, flow%eos, plan, flow%eps2, at_face, flow%w(b, from)%a, &
-        flow%w(b, start)%a, flow%w(b, new)%a, flow%books(:, :, b), flow%scratch, report, flow%open(b)%a, flow%wall_impulse(b)%a)
-    else
-      call advance_brick(mesh%brick_cells, mesh%ghost, ld, flow%layout, flow%eos, plan, flow%eps2, at_face, flow%w(b, from)%a, &
-        flow%w(b, start)%a, flow%w(b, new)%a, flow%books(:, :, b), flow%scratch, report)
-    end if
-    call count_repair(mesh, flow, repair_negative_mass, report%negative_masses, b, report%repaired)
-    call count_repair(mesh, flow, repair_clipped_fraction, report%clipped_fractions, b, report%repaired)
-    call count_repair(mesh, flow, repair_relaxation, report%fallbacks, b, report%repaired)
-    if (report%bad > 0) call repair_brick(mesh, flow, b, new)
+    ! what is not allocated counts as absent
+    call advance_brick(mesh%brick_cells, mesh%ghost, size(flow%w(b, 1)%a, 1), flow%layout, flow%eos, plan, flow%eps2, &
+      flow%positive, &
+      at_face, x_face_areas(mesh, b), cell_volumes(mesh, b), flow%w(b, from)%a, flow%w(b, start)%a, flow%w(b, new)%a, &
+      flow%books(:, :, b), flow%scratch, report, flow%open(b)%a, flow%wall_impulse(b)%a, flow%troubled(b)%a, flow%arrival(b)%a)
   end subroutine advance_one
 
 end module flow_step

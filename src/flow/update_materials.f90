@@ -181,7 +181,7 @@ contains
       new(i, p) = start(i, p) + ((conserved(i, 4) &
         - 0.5_wp*(conserved(i, 1)*u + conserved(i, 2)*v + conserved(i, 3)*w)) - work(i, 1))/work(i, 2)
       c2 = (new(i, p)*work(i, 3) + work(i, 4))*inverse
-      new(i, c) = sqrt(abs(c2))
+      new(i, c) = sign(sqrt(abs(c2)), c2) ! negative where there is none: repair_brick sees it
       bad = bad + merge(0.0_wp, 1.0_wp, new(i, p) > lowest .and. c2 > 0 .and. c2 < huge(1.0_wp))
     end do
     n_bad = nint(bad)

@@ -46,7 +46,7 @@ contains
       new(i, 3) = v
       new(i, 4) = w
       new(i, 5) = p
-      new(i, 6) = sqrt(abs(c2))
+      new(i, 6) = sign(sqrt(abs(c2)), c2) ! negative where there is none: repair_brick sees it
       bad = bad + merge(0.0_wp, 1.0_wp, p > lowest .and. c2 > 0 .and. c2 < huge(1.0_wp))
     end do
     n_bad = nint(bad)
@@ -95,7 +95,7 @@ contains
       p = work(i, 4) + g*new(i, 6)
       c2 = (work(i, 5) + p - work(i, 4) + g*p)/work(i, 1)
       new(i, 5) = p
-      new(i, 7) = sqrt(abs(c2))
+      new(i, 7) = sign(sqrt(abs(c2)), c2) ! negative where there is none: repair_brick sees it
       bad = bad + merge(0.0_wp, 1.0_wp, p > lowest .and. c2 > 0 .and. c2 < huge(1.0_wp))
     end do
     n_bad = nint(bad)

@@ -32,6 +32,7 @@ module mesh
     integer :: brick_cells(3) = 1 !< cells of a brick
     integer :: bricks(3) = 1 !< bricks of the domain
     logical :: periodic(3) = .false.
+    integer :: radial_power = 0 !< of x in the area of its faces: see module geometry
     type(brick_type), allocatable :: brick(:) !< all bricks in curve order
     integer, allocatable :: local(:) !< global indices of this rank's bricks, ascending
     integer :: n_local = 0
@@ -41,8 +42,8 @@ contains
 
   !> Lays bricks over the domain and gives each rank an equal run of them.
   !> cells: of the domain, 1 for an inactive direction; brick: cells of a brick, 0 where the code is to choose a divisor.
-  !> axis_order: directions from the one that the curve runs through fastest to the one that cuts the domain first (default x, y, z).
-  !> Fatal (bad input) if a brick does not divide the domain or is smaller than the ghost layers.
+  !> axis_order: directions from the one that the curve runs through fastest to the one that cuts the domain first (default x, y,
+  !> z). Fatal (bad input) if a brick does not divide the domain or is smaller than the ghost layers.
   subroutine build_mesh(mesh, cells, lower, upper, brick, periodic, ghosts, axis_order)
     type(mesh_type), intent(out) :: mesh
     integer, intent(in) :: cells(3), brick(3), ghosts

@@ -52,7 +52,7 @@ contains
     call build_mesh(scene%mesh, cells, lower, upper, merge(brick, cells, brick > 0), each(1, :) == face_periodic, &
       ghost_layers(chosen))
     call plan_halo(scene%mesh, scene%halo)
-    ! here: scene%flow%scheme = chosen
+    scene%flow%scheme = chosen
     call allocate_flow(scene%flow, scene%mesh, spread('gas', 1, size(eos)), eos)
     scene%flow%face = each
     associate (n => scene%mesh%brick_cells)
