@@ -1,7 +1,8 @@
 !> All test problems of the flow, and the schemes by name. A new problem is one more entry in one of the modules used here.
 module flow_suite
+  use deck_flow, only: reconstruction_names, limiter_names
   use flow_problem, only: problem_type
-  use flow_scheme, only: scheme_type, reconstruction_names, limiter_names, muscl, venkatakrishnan
+  use flow_scheme, only: scheme_type, muscl, venkatakrishnan
   use gas_problems, only: add_smooth_flows, add_shock_problems
   use interface_problems, only: add_interface_problems
   use tube_problems, only: add_gas_tubes, add_material_tubes

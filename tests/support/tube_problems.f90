@@ -69,8 +69,8 @@ contains
       [new_ideal_gas(1.4_wp), new_ideal_gas(1.6_wp)], 2, [1.0_wp, 0.0_wp, 500.0_wp], [1.0_wp, 0.0_wp, 0.2_wp], 0.5_wp, 0.012_wp, &
       200, [errors(0.04_wp, 0.03_wp, 0.02_wp), fronts], resolutions=[100, 200, 400, 800])
     call add_tube(list, 'strong_1.6_1.4', 'Gases 1.6 and 1.4, pressure ratio 2500', &
-      [new_ideal_gas(1.6_wp), new_ideal_gas(1.4_wp)], 2, [1.0_wp, 0.0_wp, 500.0_wp], [1.0_wp, 0.0_wp, 0.2_wp], 0.5_wp, 0.012_wp, 200, &
-      [errors(0.04_wp, 0.03_wp, 0.02_wp), fronts])
+      [new_ideal_gas(1.6_wp), new_ideal_gas(1.4_wp)], 2, [1.0_wp, 0.0_wp, 500.0_wp], [1.0_wp, 0.0_wp, 0.2_wp], 0.5_wp, 0.012_wp, &
+      200, [errors(0.04_wp, 0.03_wp, 0.02_wp), fronts])
     call add_tube(list, 'water_air', 'Water and dense air, pressure ratio 1e4 (Saurel & Abgrall 1999)', [water(), air()], 2, &
       [1000.0_wp, 0.0_wp, 1e9_wp], [50.0_wp, 0.0_wp, 1e5_wp], 0.7_wp, 240e-6_wp, 400, [errors(0.01_wp, 0.03_wp, 0.02_wp), &
       bound('star pressure', 0.05_wp), bound('star velocity', 0.01_wp), fronts], &
@@ -84,10 +84,11 @@ contains
       resolutions=[200, 400, 800])
     call add_tube(list, 'products_copper', 'Products at 37 GPa against copper (Saurel & Abgrall 1999; Shyue 2001)', [new_jwl( &
       854.5e9_wp, 20.5e9_wp, 4.6_wp, 1.35_wp, 0.25_wp, 1840.0_wp, 8.5e9_wp), copper()], 2, [2485.37_wp, 0.0_wp, 37e9_wp], &
-      [8900.0_wp, 0.0_wp, 1e5_wp], 0.5_wp, 73e-6_wp, 400, [errors(0.01_wp, 0.03_wp, 0.02_wp), star, fronts], resolutions=[200, 400, 800])
-    call add_tube(list, 'products_water', 'Products of TNT at constant volume against water at 0.1 MPa', [tnt_products(), water()], &
-      2, [1630.0_wp, 0.0_wp, tnt_pressure()], [1000.0_wp, 0.0_wp, 1e5_wp], 0.5_wp, 8e-5_wp, 400, [errors(0.01_wp, 0.03_wp, 0.02_wp), &
-      star, fronts], &
+      [8900.0_wp, 0.0_wp, 1e5_wp], 0.5_wp, 73e-6_wp, 400, [errors(0.01_wp, 0.03_wp, 0.02_wp), star, fronts], &
+      resolutions=[200, 400, 800])
+    call add_tube(list, 'products_water', 'Products of TNT at constant volume against water at 0.1 MPa', &
+      [tnt_products(), water()], 2, [1630.0_wp, 0.0_wp, tnt_pressure()], [1000.0_wp, 0.0_wp, 1e5_wp], 0.5_wp, 8e-5_wp, 400, &
+      [errors(0.01_wp, 0.03_wp, 0.02_wp), star, fronts], &
       resolutions=[200, 400, 800])
     call add_tube(list, 'trace_gas', 'A trace of 1e-8 of another gas crosses a strong shock', [air(), new_ideal_gas(1.667_wp)], 1, &
       [1.2_wp, 0.0_wp, 1e7_wp], [1.2_wp, 0.0_wp, 1e5_wp], 0.4_wp, 1.2e-4_wp, 200, &
