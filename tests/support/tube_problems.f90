@@ -195,8 +195,8 @@ contains
     profile = profile_of(scene)
     h = scene%mesh%spacing(1)
     cell = profile%state(5, :)
-    first = margin + ceiling(exact_cell(solution%inner_speed(1)))
-    last = floor(exact_cell(solution%inner_speed(2))) - margin
+    first = max(1, margin + ceiling(exact_cell(solution%inner_speed(1))))
+    last = min(size(cell), floor(exact_cell(solution%inner_speed(2))) - margin)
     if (last - first > 2 .and. .not. solution%is_vacuum) then
       call note_measure(problem, outcome, 'star pressure', abs(sum(cell(first:last))/(last - first + 1)/solution%pressure - 1))
       if (abs(solution%velocity(1)) > tiny(1.0_wp)) call note_measure(problem, outcome, 'star velocity', &
