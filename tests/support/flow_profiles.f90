@@ -104,7 +104,7 @@ contains
     end do
   end function line_profile
 
-  !> Position, counted in cells (1 is the centre of the first), where values cross the level: the last place or the first. 0: nowhere.
+  !> Position, counted in cells (1 is the centre of the first), where values cross the level: the last or the first. 0: nowhere.
   pure real(wp) function crossing(values, level, last)
     real(wp), intent(in) :: values(:), level
     logical, intent(in) :: last
