@@ -92,20 +92,22 @@ contains
   end subroutine clear_scratch
 
   !> Computes the new state of a brick. from: state that the fluxes belong to, ghosts filled; start: state at the start of the
-  !> step; n: cells; g: ghost layers; ld: length of a row; eps2: of the limiter, by variable; positive: variables that must be so on
+  !> step; n: cells; g: ghost layers; ld: length of a row; eps2: of the limiter, steepest: alpha of the
+  !> fifth-order bound, by variable; positive: variables that must be so on
   !> faces. booked(quantity, face): what enters the brick in the whole step through its faces (x low, x high, y low, ...) is added
   !> there, for faces with at_face. area, volume: of the faces across x and of the cells of a row.
   !> Optional, of bricks that have such cells: open: 1 where open, 0 where closed; impulse: the momentum that closed cells receive
   !> is added to the open cell beside them; troubled: 1 where all fluxes are to be of first order; arrival: time at which a
   !> detonation front passes.
-  subroutine advance_brick(n, g, ld, layout, eos, stage, eps2, positive, at_face, area, volume, from, start, new, booked, s, &
+  subroutine advance_brick(n, g, ld, layout, eos, stage, eps2, steepest, positive, at_face, area, volume, from, start, new, &
+    booked, s, &
     report, &
       open, impulse, troubled, arrival)
     integer, intent(in) :: n(3), g(3), ld
     type(layout_type), intent(in) :: layout
     type(eos_type), intent(in) :: eos(layout%n_materials)
     type(stage_type), intent(in) :: stage
-    real(wp), intent(in) :: eps2(layout%n_reconstructed)
+    real(wp), intent(in), dimension(layout%n_reconstructed) :: eps2, steepest
     logical, intent(in) :: positive(layout%n_reconstructed)
     logical, intent(in) :: at_face(6)
     real(wp), intent(in) :: area(n(1) + 1), volume(n(1))
@@ -231,7 +233,8 @@ contains
       nr = layout%n_reconstructed
       associate (s1 => stride(direction))
         if (stage%scheme%reconstruction == fifth_order) then
-          call reconstruct_fifth_order(n_cells, ld, nr, s1, positive, from(i - 2*one(1), 1, j - 2*one(2), k - 2*one(3)), low, high)
+          call reconstruct_fifth_order(n_cells, ld, nr, s1, steepest, positive, from(i - 2*one(1), 1, j - 2*one(2), k - 2*one(3)), &
+            low, high)
           v = layout%fraction(1)
           if (layout%n_materials == 2) call keep_below_one(n_cells, from(i, v, j, k), low(1, v), high(1, v))
         else

@@ -1,5 +1,5 @@
 !> Fifth-order reconstruction of primitive variables on the faces of a row of cells: the upwind value of five cells, kept within the
-!> monotonicity bound of Suresh & Huynh (J. Comput. Phys. 136, 1997; alpha = 4). They widen the bound at smooth extrema by
+!> monotonicity bound of Suresh & Huynh (J. Comput. Phys. 136, 1997). They widen the bound at smooth extrema by
 !> curvatures of each face; here one allowance serves both faces of a cell: half the smallest of three neighbouring second
 !> differences, less what they differ among themselves. It is nil at jumps, where they differ by more than a factor of two, and
 !> lets every smooth extremum pass. That costs half as much as their bound, with the same errors on shock tubes and waves.
@@ -13,24 +13,25 @@ module fifth_order_upwind
 
 contains
 
-  !> Face values of n cells and all variables, as reconstruct_muscl. positive: variables whose face values must be so.
-  pure subroutine reconstruct_fifth_order(n, ld, n_var, stride, positive, q, low, high)
+  !> Face values of n cells and all variables, as reconstruct_muscl. alpha: how many times the difference on the other side of the
+  !> cell a face value may lie away, by variable: up to 4; positive: variables whose face values must be so.
+  pure subroutine reconstruct_fifth_order(n, ld, n_var, stride, alpha, positive, q, low, high)
     integer, intent(in) :: n, ld, n_var, stride
     logical, intent(in) :: positive(n_var)
-    real(wp), intent(in) :: q(1 - 2*stride:*)
+    real(wp), intent(in) :: alpha(n_var), q(1 - 2*stride:*)
     real(wp), intent(inout) :: low(ld, n_var), high(ld, n_var)
     integer :: v, first
     do v = 1, n_var
       first = (v - 1)*ld + 1
-      call bounded_row(n, merge(0.0_wp, huge(1.0_wp), positive(v)), q(first - 2*stride), q(first - stride), q(first), &
+      call bounded_row(n, alpha(v), merge(0.0_wp, huge(1.0_wp), positive(v)), q(first - 2*stride), q(first - stride), q(first), &
         q(first + stride), q(first + 2*stride), low(1, v), high(1, v))
     end do
   end subroutine reconstruct_fifth_order
 
   !> One variable. slack: how far below 0 its face values may go.
-  pure subroutine bounded_row(n, slack, second_below, below, here, above, second_above, low, high)
+  pure subroutine bounded_row(n, alpha, slack, second_below, below, here, above, second_above, low, high)
     integer, intent(in) :: n
-    real(wp), intent(in) :: slack
+    real(wp), intent(in) :: alpha, slack
     real(wp), intent(in), dimension(n) :: second_below, below, here, above, second_above
     real(wp), intent(inout) :: low(n), high(n)
     real(wp), parameter :: sixtieth = 1.0_wp/60
@@ -50,8 +51,8 @@ contains
       allowance = max(max(smallest - 0.5_wp*largest, 0.5_wp*smallest - largest), 0.0_wp)
       rise = sixtieth*((11*y - 2*yy) + (24*x - 3*xx))
       fall = sixtieth*((11*x - 2*xx) + (24*y - 3*yy))
-      rise = min(max(rise, min(max(x, 4*y), 0.0_wp) - allowance), max(min(x, 4*y), 0.0_wp) + allowance)
-      fall = min(max(fall, min(max(y, 4*x), 0.0_wp) - allowance), max(min(y, 4*x), 0.0_wp) + allowance)
+      rise = min(max(rise, min(max(x, alpha*y), 0.0_wp) - allowance), max(min(x, alpha*y), 0.0_wp) + allowance)
+      fall = min(max(fall, min(max(y, alpha*x), 0.0_wp) - allowance), max(min(y, alpha*x), 0.0_wp) + allowance)
       least = least_part*here(i) - slack
       high(i) = max(here(i) + rise, least)
       low(i) = max(here(i) - fall, least)

@@ -37,6 +37,7 @@ module flow_state
     integer :: current = 1 !< buffer of the state at the start of the step
     type(scheme_type) :: scheme
     real(wp), allocatable :: eps2(:) !< square of the limiter's eps for each reconstructed row, in the row's units
+    real(wp), allocatable :: steepest(:) !< alpha of the fifth-order bound for each reconstructed row
     logical, allocatable :: positive(:) !< reconstructed rows whose face values must be so
     real(wp) :: cfl = 0.8_wp !< of the sum over directions
     real(wp) :: trace_fraction = 1e-8_wp !< smallest volume fraction of a material
@@ -78,6 +79,12 @@ contains
     allocate (flow%w(mesh%n_local, 3), flow%open(mesh%n_local), flow%wall_impulse(mesh%n_local), &
       flow%troubled(mesh%n_local), flow%arrival(mesh%n_local))
     allocate (flow%eps2(flow%layout%n_reconstructed), source=no_noise)
+    allocate (flow%steepest(flow%layout%n_reconstructed), source=4.0_wp)
+    if (size(eos) > 1) then
+      ! masses and fractions of traces would oscillate below 0
+      flow%steepest(:size(eos)) = 2
+      flow%steepest(flow%layout%first_fraction_row:) = 2
+    end if
     allocate (flow%positive(flow%layout%n_reconstructed), source=.true.)
     flow%positive(flow%layout%velocity_row:flow%layout%velocity_row + 2) = .false.
     flow%positive(flow%layout%pressure_row) = .not. flow%lowest_pressure() < 0
