@@ -135,9 +135,9 @@ contains
     at_face(2::2) = mesh%brick(mesh%local(b))%at_high .and. mesh%active
     ! what is not allocated counts as absent
     call advance_brick(mesh%brick_cells, mesh%ghost, size(flow%w(b, 1)%a, 1), flow%layout, flow%eos, plan, flow%eps2, &
-      flow%steepest, flow%positive, &
-      at_face, x_face_areas(mesh, b), cell_volumes(mesh, b), flow%w(b, from)%a, flow%w(b, start)%a, flow%w(b, new)%a, &
-      flow%books(:, :, b), flow%scratch, report, flow%open(b)%a, flow%wall_impulse(b)%a, flow%troubled(b)%a, flow%arrival(b)%a)
+      flow%steepest, flow%positive, at_face, x_face_areas(mesh, b), cell_volumes(mesh, b), flow%w(b, from)%a, &
+      flow%w(b, start)%a, flow%w(b, new)%a, flow%books(:, :, b), flow%scratch, report, flow%open(b)%a, flow%wall_impulse(b)%a, &
+      flow%troubled(b)%a, flow%arrival(b)%a)
   end subroutine advance_one
 
 end module flow_step
