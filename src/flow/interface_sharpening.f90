@@ -40,8 +40,8 @@ contains
       row = (row - 1)*ld
       call tangent_faces(n, stride, over_h, along, reach, q(row + 1 - reach), a_low(1, k), a_high(1, k))
     end do
-    call spread_to_materials(n, ld, layout, a_low, low, factor)
-    call spread_to_materials(n, ld, layout, a_high, high, factor)
+    call spread_to_materials(n, ld, layout, reach, q, a_low, low, factor)
+    call spread_to_materials(n, ld, layout, reach, q, a_high, high, factor)
   end subroutine sharpen_faces
 
   pure real(wp) function most_mixed(n, a)
@@ -90,57 +90,53 @@ contains
     end do
   end subroutine tangent_faces
 
-  !> Scales partial densities and energies to new fractions a on a face, and adds the densities up.
-  pure subroutine spread_to_materials(n, ld, layout, a, face, factor)
-    integer, intent(in) :: n, ld
+  !> Takes new fractions a on a face; where they are new, partial densities and energies are those of the cell in the new
+  !> proportion (their reconstructed ratios to a steep fraction mean nothing), and the density is their sum.
+  pure subroutine spread_to_materials(n, ld, layout, reach, q, a, face, factor)
+    integer, intent(in) :: n, ld, reach
     type(layout_type), intent(in) :: layout
-    real(wp), intent(in) :: a(ld, *)
+    real(wp), intent(in) :: q(1 - reach:*), a(ld, *)
     real(wp), intent(inout) :: face(ld, *), factor(ld)
     integer :: i, k, row, fraction
     do k = 1, layout%n_materials
-      row = layout%fraction(k)
-      if (row > 0) then
+      if (k <= layout%n_fractions) then
+        fraction = layout%first_fraction_row + k - 1
         !$omp simd
         do i = 1, n
-          factor(i) = a(i, k)/face(i, row)
+          factor(i) = merge(a(i, k)/q((fraction - 1)*ld + i), 0.0_wp, abs(a(i, k) - face(i, fraction)) > 0)
         end do
       else ! the second of two
-        row = layout%fraction(1)
+        fraction = layout%first_fraction_row
         !$omp simd
         do i = 1, n
-          factor(i) = (1 - a(i, 1))/(1 - face(i, row))
+          factor(i) = merge((1 - a(i, 1))/(1 - q((fraction - 1)*ld + i)), 0.0_wp, abs(a(i, 1) - face(i, fraction)) > 0)
         end do
       end if
-      !$omp simd
-      do i = 1, n
-        face(i, k) = face(i, k)*factor(i)
-      end do
+      call scale_row(n, factor, q((k - 1)*ld + 1), face(1, k))
       row = layout%energy_row(k)
-      if (row == 0) cycle
-      !$omp simd
-      do i = 1, n
-        face(i, row) = face(i, row)*factor(i)
-      end do
-    end do
-    !$omp simd
-    do i = 1, n
-      factor(i) = face(i, 1) + face(i, 2)
-    end do
-    do k = 3, layout%n_materials
-      !$omp simd
-      do i = 1, n
-        factor(i) = factor(i) + face(i, k)
-      end do
+      if (row > 0) call scale_row(n, factor, q((row - 1)*ld + 1), face(1, row))
     end do
     row = layout%density_row
     do k = 1, layout%n_fractions
       fraction = layout%first_fraction_row + k - 1
-      !$omp simd
       do i = 1, n
-        face(i, row) = merge(factor(i), face(i, row), abs(a(i, k) - face(i, fraction)) > 0)
+        if (.not. abs(a(i, k) - face(i, fraction)) > 0) cycle
+        face(i, row) = sum(face(i, :layout%n_materials))
         face(i, fraction) = a(i, k)
       end do
     end do
   end subroutine spread_to_materials
+
+  !> factor times the value of the cell, where the factor is not 0.
+  pure subroutine scale_row(n, factor, cell, face)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: factor(n), cell(n)
+    real(wp), intent(inout) :: face(n)
+    integer :: i
+    !$omp simd
+    do i = 1, n
+      face(i) = merge(factor(i)*cell(i), face(i), factor(i) > 0)
+    end do
+  end subroutine scale_row
 
 end module interface_sharpening
