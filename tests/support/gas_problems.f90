@@ -62,7 +62,7 @@ contains
     problem%end_time = 0.038_wp
     problem%is_hard = .true.
     problem%start => three_regions
-    problem%bound = [bound('density', 0.06_wp), bound('velocity', 0.03_wp), bound('pressure', 0.03_wp), &
+    problem%bound = [bound('density', 0.07_wp), bound('velocity', 0.03_wp), bound('pressure', 0.03_wp), &
       bound('mass balance', 1e-11_wp), bound('energy balance', 1e-11_wp)]
     call add_problem(list, problem)
 
@@ -248,8 +248,8 @@ contains
     problem%name = 'sedov_3'
     problem%title = 'Blast from a point (Sedov 1959), an octant of it; the shock has come to a distance of 1'
     problem%eos = [new_ideal_gas(1.4_wp)]
-    problem%cells = 64
-    problem%resolutions = [32, 64]
+    problem%cells = 32
+    problem%resolutions = [16, 32]
     problem%upper = 1.2_wp
     problem%faces(1, :) = face_symmetry
     problem%end_time = sqrt(blast%alpha)
