@@ -213,6 +213,8 @@ contains
     type(material_group), intent(in) :: material
     type(key_table), intent(in) :: table
     type(problem_list), intent(inout) :: problems
+    if (min(material%grueneisen, material%cochran_chan_a1, material%cochran_chan_a2, material%cochran_chan_e1, &
+      material%cochran_chan_e2) <= unset) return ! given, but out of range
     associate (g => material%grueneisen, e1 => material%cochran_chan_e1, e2 => material%cochran_chan_e2)
       if (e2 >= e1) then
         call problems%add_at_key(table, 'cochran_chan_e2', 'must be less than cochran_chan_e1')
@@ -316,7 +318,7 @@ contains
       speed = sqrt(to_si(material%youngs_modulus, 1, -1, -2, system)/density)
       if (speed < 20.0_wp .or. speed > 3e4_wp) call warnings%add_at_key(table, 'youngs_modulus', &
         'with this density gives sound a speed of '//str(speed, 3)//' m/s: are both in the units '//system//'?')
-    else if (material%eos == 'polynomial') then
+    else if (material%eos == 'polynomial' .and. material%polynomial_k1 > unset) then
       speed = sqrt(to_si(material%polynomial_k1, 1, -1, -2, system)/density)
       if (speed < 100.0_wp .or. speed > 3e4_wp) call warnings%add_at_key(table, 'polynomial_k1', &
         'with this density gives sound a speed of '//str(speed, 3)//' m/s: are both in the units '//system//'?')

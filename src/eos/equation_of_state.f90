@@ -2,8 +2,8 @@
 !> Inside the flow, energies of gases are counted from their offset q: masses are conserved one by one, so q changes nothing.
 !>
 !> Condensed matter: let h(r) = r f' - f. Then r c**2 = h + (1 + g) p, so sound at any pressure from 0 up, and one answer of the
-!> pressure relaxation, need h > 0. Curves through shock data lose it in strong compression (those of metals near V = 0.6, at
-!> some 300 GPa), so f is a straight line in r, with constant h, from the volume on where h has come down to a quarter of its
+!> pressure relaxation, need h > 0. Curves through shock data lose it in strong compression (those of metals near V = 0.63,
+!> at some 250 GPa), so f is a straight line in r, with constant h, from the volume on where h has come down to a quarter of its
 !> value at rest (`least_volume`).
 module equation_of_state
   use cochran_chan, only: cochran_chan_type, cochran_chan_reference, cochran_chan_isentrope_density, &

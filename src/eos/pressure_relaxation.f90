@@ -5,7 +5,7 @@
 !> All is written in deviations from the fractions and from a start pressure: what is in equilibrium there keeps every bit.
 module pressure_relaxation
   use kinds, only: wp
-  use equation_of_state, only: eos_type, max_materials
+  use equation_of_state, only: eos_type, max_materials, is_jwl
   use relaxation_fallback, only: relax_cell
   implicit none
   private
@@ -13,6 +13,7 @@ module pressure_relaxation
 
   integer, parameter :: max_iterations = 12
   integer, parameter :: surplus = 1, stiffness = 2, moving = 3, volume = 4 !< columns of the work space
+  integer, parameter :: softness = volume !< the part of the stiffness that soft materials have, beside condensed matter
   real(wp), parameter :: step_tolerance = 1e-6_wp !< of the last Newton step, relative; the error left is about its square
 
 contains
@@ -60,10 +61,13 @@ contains
     integer, intent(out) :: n_fallback
     real(wp), intent(inout) :: a_start(ld, n_materials), step(ld, n_materials), response(ld, n_materials)
     real(wp), intent(inout) :: f(ld, n_materials), r_df(ld, n_materials), work(ld, 4)
+    logical :: soft(n_materials), condensed
     real(wp) :: lowest, unconverged, cell_m(max_materials), cell_e(max_materials), cell_a(max_materials), cell_p
     integer :: iteration, k, i
     lowest = 0
     if (all(eos%is_gas)) lowest = -minval(eos%gas%p_infinity)
+    condensed = .not. all(eos%is_gas .or. eos%kind == is_jwl)
+    soft = condensed .and. (eos%kind == is_jwl .or. (eos%is_gas .and. .not. eos%gas%p_infinity > 0))
     a_start(:n, :) = a(:n, :)
     work(:n, moving) = 1
     do iteration = 1, max_iterations
@@ -72,7 +76,9 @@ contains
       end do
       if (iteration == 1) call guess_pressure(n, ld, n_materials, eos, a, e, f, p_start, work(:, surplus), &
         work(:, stiffness), p)
-      call step_all(n, ld, n_materials, lowest, eos, e, a_start, p_start, f, r_df, a, p, step, response, work, unconverged)
+      if (iteration == 1 .and. condensed) p(:n) = max(p(:n), 0.1_wp*p_start(:n))
+      call step_all(n, ld, n_materials, lowest, condensed, soft, eos, e, a_start, p_start, f, r_df, a, p, step, response, &
+        work, unconverged)
       if (.not. unconverged > 0) exit
     end do
     do k = 1, n_materials
@@ -94,26 +100,34 @@ contains
   end subroutine relax_materials
 
   !> One Newton step of all cells and materials.
-  pure subroutine step_all(n, ld, n_materials, lowest, eos, e, a_start, p_start, f, r_df, a, p, step, response, work, unconverged)
+  pure subroutine step_all(n, ld, n_materials, lowest, condensed, soft, eos, e, a_start, p_start, f, r_df, a, p, step, response, &
+      work, unconverged)
     integer, intent(in) :: n, ld, n_materials
+    logical, intent(in) :: condensed, soft(n_materials)
     type(eos_type), intent(in) :: eos(n_materials)
     real(wp), intent(in) :: lowest, p_start(ld)
     real(wp), intent(in), dimension(ld, n_materials) :: e, a_start, f, r_df
     real(wp), intent(inout), dimension(ld, n_materials) :: a, step, response
     real(wp), intent(inout) :: p(ld), work(ld, 4)
     real(wp), intent(out) :: unconverged
-    integer :: k
+    integer :: k, column
     work(:n, surplus) = 0
     work(:n, stiffness) = 0
+    work(:n, softness) = 0
     do k = 1, n_materials
+      column = merge(softness, stiffness, soft(k))
       if (eos(k)%is_gas) then
-        call gas_terms(n, eos(k), e(:, k), p_start, a_start(:, k), p, a(:, k), work(:, surplus), work(:, stiffness))
+        call gas_terms(n, eos(k), e(:, k), p_start, a_start(:, k), p, a(:, k), work(:, surplus), work(:, column))
       else
         call newton_terms(n, eos(k)%grueneisen, e(:, k), a_start(:, k), p, f(:, k), r_df(:, k), a(:, k), &
-          step(:, k), response(:, k), work(:, surplus), work(:, stiffness))
+          step(:, k), response(:, k), work(:, surplus), work(:, column))
       end if
     end do
-    call move_pressure(n, lowest, work(:, moving), work(:, surplus), work(:, stiffness), p)
+    if (condensed) then
+      call move_pressure_between(n, work(:, moving), work(:, surplus), work(:, stiffness), work(:, softness), p)
+    else
+      call move_pressure(n, lowest, work(:, moving), work(:, surplus), work(:, stiffness), p)
+    end if
     do k = 1, n_materials
       if (.not. eos(k)%is_gas) call move_fraction(n, eos(k)%grueneisen, a_start(:, k), step(:, k), response(:, k), &
         work(:, surplus), work(:, moving), a(:, k))
@@ -212,6 +226,30 @@ contains
       surplus(i) = rise
     end do
   end subroutine move_pressure
+
+  !> The same where condensed matter is beside soft materials: between a firm part, linear in p, and a soft part, like 1/p, the
+  !> pressure may have to fall by many orders of ten, when matter that is thinned out lets a trace of gas fill a gap. With the
+  !> surplus F, and S p**2/p for the soft part, the step d solves F - S p d/(p + d) - stiffness d = 0, a quadratic whose root
+  !> keeps p + d positive. A rise is held to ten times the pressure or the step of Newton's method, which falls short of the root.
+  pure subroutine move_pressure_between(n, moving, surplus, stiffness, softness, p)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: moving(n), stiffness(n), softness(n)
+    real(wp), intent(inout) :: surplus(n), p(n)
+    real(wp) :: linear, root, rise, newton
+    integer :: i
+    !$omp simd private(linear, root, rise, newton)
+    do i = 1, n
+      newton = surplus(i)/(stiffness(i) + softness(i))
+      linear = (stiffness(i) + softness(i))*p(i) - surplus(i)
+      root = sqrt(max(linear*linear + 4*stiffness(i)*surplus(i)*p(i), 0.0_wp))
+      rise = 2*surplus(i)*p(i)/max(abs(linear) + root, tiny(1.0_wp))
+      rise = merge(rise, max(newton, 9*p(i)), linear > 0)
+      rise = max(min(rise, max(newton, 9*p(i))), -0.999999_wp*p(i))
+      rise = merge(rise, 0.0_wp, moving(i) > 0)
+      p(i) = p(i) + rise
+      surplus(i) = rise
+    end do
+  end subroutine move_pressure_between
 
   !> Moves a fraction with the pressure, by no more than keeps it above its limit of compression. A step that is still large
   !> marks the cell as moving with the value 2.

@@ -24,7 +24,7 @@ contains
     real(wp), intent(in) :: over_h(3), q(1 - reach:*)
     real(wp), intent(inout) :: low(ld, *), high(ld, *), a_low(ld, *), a_high(ld, *), factor(ld)
     real(wp) :: greatest
-    integer :: k, row
+    integer :: i, k, row
     do k = 1, layout%n_fractions
       row = (layout%fraction(k) - 1)*ld
       greatest = most_mixed(n, q(row + 1))
@@ -32,9 +32,12 @@ contains
     end do
     if (.not. greatest > mixed) return
     do k = 1, layout%n_fractions
-      row = (layout%fraction(k) - 1)*ld
-      a_low(:n, k) = low(:n, layout%fraction(k))
-      a_high(:n, k) = high(:n, layout%fraction(k))
+      row = layout%fraction(k)
+      do i = 1, n
+        a_low(i, k) = low(i, row)
+        a_high(i, k) = high(i, row)
+      end do
+      row = (row - 1)*ld
       call tangent_faces(n, stride, over_h, along, reach, q(row + 1 - reach), a_low(1, k), a_high(1, k))
     end do
     call spread_to_materials(n, ld, layout, a_low, low, factor)
@@ -93,7 +96,7 @@ contains
     type(layout_type), intent(in) :: layout
     real(wp), intent(in) :: a(ld, *)
     real(wp), intent(inout) :: face(ld, *), factor(ld)
-    integer :: i, k, row
+    integer :: i, k, row, fraction
     do k = 1, layout%n_materials
       row = layout%fraction(k)
       if (row > 0) then
@@ -112,23 +115,30 @@ contains
       do i = 1, n
         face(i, k) = face(i, k)*factor(i)
       end do
-      row = layout%energy(k)
+      row = layout%energy_row(k)
       if (row == 0) cycle
       !$omp simd
       do i = 1, n
         face(i, row) = face(i, row)*factor(i)
       end do
     end do
-    factor(:n) = face(:n, 1)
-    do k = 2, layout%n_materials
-      factor(:n) = factor(:n) + face(:n, k)
+    !$omp simd
+    do i = 1, n
+      factor(i) = face(i, 1) + face(i, 2)
     end do
-    row = layout%density()
-    do k = 1, layout%n_fractions
+    do k = 3, layout%n_materials
       !$omp simd
       do i = 1, n
-        face(i, row) = merge(factor(i), face(i, row), abs(a(i, k) - face(i, layout%fraction(k))) > 0)
-        face(i, layout%fraction(k)) = a(i, k)
+        factor(i) = factor(i) + face(i, k)
+      end do
+    end do
+    row = layout%density_row
+    do k = 1, layout%n_fractions
+      fraction = layout%first_fraction_row + k - 1
+      !$omp simd
+      do i = 1, n
+        face(i, row) = merge(factor(i), face(i, row), abs(a(i, k) - face(i, fraction)) > 0)
+        face(i, fraction) = a(i, k)
       end do
     end do
   end subroutine spread_to_materials

@@ -53,7 +53,8 @@ contains
     else
       high = max(left%pressure, right%pressure)
       do while (excess_velocity(solution, high) < 0)
-        high = high + max(high - low, maxval(solution%isentrope%start%density*solution%isentrope%start%sound_speed**2))
+        high = high + max(high - low, maxval(solution%isentrope%start%density*solution%isentrope%start%sound_speed**2), &
+          maxval(solution%side%density)*(right%velocity - left%velocity)**2)
       end do
       do i = 1, 200
         solution%pressure = 0.5_wp*(low + high)

@@ -60,7 +60,9 @@ contains
     class(isentrope_type), intent(in) :: self
     real(wp), intent(in) :: pressure
     type(isentrope_point) :: point
-    if (self%closed_form) then
+    if (is_cold(self)) then
+      point = self%start
+    else if (self%closed_form) then
       associate (gas => self%eos%gas)
         point = gas_point(self, (max(pressure + gas%p_infinity, 0.0_wp)/(self%start%pressure + gas%p_infinity)) &
           **((gas%gamma - 1)/(2*gas%gamma)))
@@ -102,7 +104,9 @@ contains
     class(isentrope_type), intent(in) :: self
     real(wp), intent(in) :: w
     type(isentrope_point) :: point
-    if (self%closed_form) then
+    if (is_cold(self)) then
+      point = self%start
+    else if (self%closed_form) then
       point = gas_point(self, max(1 + 0.5_wp*(self%eos%gas%gamma - 1)*w/self%start%sound_speed, 0.0_wp))
     else
       point = found(self, by_velocity, w)
@@ -115,13 +119,21 @@ contains
     real(wp), intent(in) :: speed
     type(isentrope_point) :: point
     real(wp) :: g
-    if (self%closed_form) then
+    if (is_cold(self)) then
+      point = self%start
+    else if (self%closed_form) then
       g = self%eos%gas%gamma
       point = gas_point(self, max((2 + (g - 1)*speed/self%start%sound_speed)/(g + 1), 0.0_wp))
     else
       point = found(self, by_speed, speed)
     end if
   end function at_speed
+
+  !> A gas without pressure, or at its strongest tension, does not expand.
+  pure logical function is_cold(self)
+    class(isentrope_type), intent(in) :: self
+    is_cold = self%closed_form .and. .not. self%start%sound_speed > 0
+  end function is_cold
 
   !> Of a gas, at a sound speed of ratio times that of the start.
   pure function gas_point(self, ratio) result(point)

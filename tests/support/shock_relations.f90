@@ -9,7 +9,8 @@ module shock_relations
 contains
 
   !> What a shock that raises (r, p) to pressure p_new does: density behind it, change of the material's velocity in the
-  !> direction of the shock, speed of the shock against the material ahead. Without a rise it is a sound wave.
+  !> direction of the shock, speed of the shock against the material ahead. Without a rise it is a sound wave. Compressions up to
+  !> a hundredth of the volume are looked at.
   pure subroutine shock_jump(eos, r, p, p_new, density, velocity, speed)
     type(eos_type), intent(in) :: eos
     real(wp), intent(in) :: r, p, p_new
@@ -67,10 +68,10 @@ contains
     call shock_jump(eos, r, p, p_incident, r_incident, velocity, speed)
     low = p_incident
     high = p_incident + r_incident*velocity*(velocity + sqrt(eos%sound_speed_squared(r_incident, p_incident)))
-    do
-      call shock_jump(eos, r_incident, p_incident, high, r_trial, velocity_trial, speed)
-      if (velocity_trial >= velocity) exit
+    velocity_trial = 0
+    do while (velocity_trial < velocity)
       high = high + 2*(high - low)
+      call shock_jump(eos, r_incident, p_incident, high, r_trial, velocity_trial, speed)
     end do
     do i = 1, 100
       pressure = 0.5_wp*(low + high)
