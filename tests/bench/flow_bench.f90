@@ -9,7 +9,7 @@ program flow_bench
   use flow_scheme, only: scheme_type
   use flow_speed, only: speed_type, time_steps
   use flow_state, only: n_repairs, repair_names
-  use flow_suite, only: all_problems, scheme_named
+  use flow_suite, only: all_problems, scheme_named, promised_cfl
   use kinds, only: wp
   use parallel, only: parallel_start, parallel_stop
   use process, only: exit_process
@@ -84,7 +84,7 @@ contains
     real(wp), allocatable :: cfl(:)
     integer :: i, k, s
     schemes = schemes_or(default_scheme)
-    cfl = [0.5_wp, 0.8_wp]
+    cfl = promised_cfl
     if (size(options%cfl) > 0) cfl = options%cfl
     call all_problems(list)
     call print_head()
