@@ -177,7 +177,7 @@ contains
     type(problem_type), allocatable, intent(inout) :: list(:)
     integer, intent(in) :: d
     integer, parameter :: cells(3) = [200, 100, 48]
-    real(wp), parameter :: most_density(3) = [0.05_wp, 0.10_wp, 0.25_wp], most_pressure(3) = [0.03_wp, 0.06_wp, 0.15_wp]
+    real(wp), parameter :: most_density(3) = [0.05_wp, 0.10_wp, 0.25_wp], most_pressure(3) = [0.03_wp, 0.06_wp, 0.20_wp]
     type(problem_type) :: problem
     problem%name = 'noh_'//'123'(d:d)
     problem%title = 'Noh''s implosion in '//'123'(d:d)//' dimensions (Noh 1987)'
@@ -362,7 +362,8 @@ contains
     real(wp), intent(in) :: x(3)
     real(wp), intent(out) :: r(:), a(:), u(3), p
     call fill_region(problem, merge(1, 2, x(1) < problem%place), r, a, u, p)
-    r = r*(1 + noise*(-1)**floor(x(2)/problem%spacing(2)))
+    ! not quite the same in all pairs of rows: otherwise symmetry would keep the transverse velocity at nil
+    r = r*(1 + noise*(-1)**floor(x(2)/problem%spacing(2))*(1 + 0.5_wp*sin(8*atan(1.0_wp)*x(2)/problem%upper(2))))
   end subroutine noisy_shock
 
   !> Behind the shock: half the range of density over its mean, row against row, and the largest transverse velocity over the sound
