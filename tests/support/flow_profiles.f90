@@ -5,7 +5,7 @@ module flow_profiles
   use mixture, only: cell_fractions
   implicit none
   private
-  public :: profile_of, coarse_profile, all_positive, crossing, fraction_profile, line_profile
+  public :: profile_of, coarse_profile, all_positive, crossing, fraction_profile, front_distance
 
   !> All cells of a scene, x fastest.
   type, public :: profile_type
@@ -90,19 +90,37 @@ contains
     end do
   end function fraction_profile
 
-  !> State (5) of the cells (i, i, ...) of the directions that are set, from the low corner on.
-  function line_profile(profile, cells, directions) result(state)
+  !> Distance from the origin at which the pressure falls through a level, towards the diagonal of the directions in `line`. From
+  !> the cells near that ray, since those on it may be sqrt(3) spacings apart: the distance that parts those above the level from
+  !> those below best. active: directions that are there; guess: right to eight spacings h.
+  real(wp) function front_distance(profile, h, line, active, level, guess)
     type(profile_type), intent(in) :: profile
-    integer, intent(in) :: cells(3)
-    logical, intent(in) :: directions(3)
-    real(wp), allocatable :: state(:, :)
-    integer :: i, at(3)
-    allocate (state(5, minval(cells, directions)))
-    do i = 1, size(state, 2)
-      at = merge(i, 1, directions)
-      state(:, i) = profile%state(:, at(1) + cells(1)*(at(2) - 1 + cells(2)*(at(3) - 1)))
+    real(wp), intent(in) :: h, level, guess
+    logical, intent(in) :: line(3), active(3)
+    integer, parameter :: steps = 1000 !< of the search
+    real(wp), parameter :: reach = 8, aside = 1.5_wp !< in spacings
+    real(wp), allocatable :: distance(:), x(:)
+    logical, allocatable :: above(:)
+    real(wp) :: ray(3), radius, trial, cost, least
+    integer :: i
+    allocate (distance(0), above(0))
+    ray = merge(1.0_wp, 0.0_wp, line)/sqrt(real(count(line), wp))
+    do i = 1, size(profile%x, 2)
+      x = merge(profile%x(:, i), 0.0_wp, active)
+      radius = norm2(x)
+      if (abs(radius - guess) > reach*h .or. norm2(x - dot_product(x, ray)*ray) > aside*h) cycle
+      distance = [distance, radius]
+      above = [above, profile%state(5, i) > level]
     end do
-  end function line_profile
+    front_distance = 0
+    least = huge(least)
+    do i = 0, steps
+      trial = guess + (2*real(i, wp)/steps - 1)*reach*h
+      cost = sum(abs(distance - trial), above .neqv. distance < trial)
+      if (cost < least) front_distance = trial
+      least = min(cost, least)
+    end do
+  end function front_distance
 
   !> Position, counted in cells (1 is the centre of the first), where values cross the level: the last or the first. 0: nowhere.
   pure real(wp) function crossing(values, level, last)

@@ -3,7 +3,7 @@
 module gas_problems
   use equation_of_state, only: eos_type, new_ideal_gas
   use flow_problem, only: problem_type, outcome_type, region_type, add_problem, fill_region, bound, note_measure
-  use flow_profiles, only: profile_type, profile_of, line_profile, crossing
+  use flow_profiles, only: profile_type, profile_of, crossing, front_distance
   use flow_scenes, only: flow_scene
   use flow_state, only: face_outflow, face_periodic, face_symmetry
   use kinds, only: wp
@@ -237,7 +237,7 @@ contains
     integer :: d
     d = count(problem%cells > 1)
     implosion%geometry = d
-    call note_front(problem, scene, 5, (4.0_wp**d)/6, implosion%shock_speed()*scene%time, outcome)
+    call note_front(problem, scene, 4.0_wp**d/3, implosion%shock_speed()*scene%time, outcome)
   end subroutine measure_noh
 
   subroutine add_sedov(list)
@@ -302,29 +302,26 @@ contains
     type(problem_type), intent(in) :: problem
     type(flow_scene), intent(in) :: scene
     type(outcome_type), intent(inout) :: outcome
-    call note_front(problem, scene, 1, 0.0_wp, 1.0_wp, outcome)
+    type(sedov_type) :: blast
+    associate (gamma => problem%eos(1)%gas%gamma)
+      blast = new_sedov(3, gamma, 1.0_wp, 1.0_wp)
+      call note_front(problem, scene, 2/(gamma + 1)*blast%shock_speed(scene%time)**2, blast%shock_radius(scene%time), outcome)
+    end associate
   end subroutine measure_sedov
 
-  !> How many cells the front is off, along an axis and the diagonals: where a variable (1 density, 5 pressure) crosses a level
-  !> (0: half way between its last and largest value) from outside.
-  subroutine note_front(problem, scene, variable, level, exact, outcome)
+  !> How many cells the shock is off, towards an axis and the diagonals. pressure: behind it; exact: its distance from the centre.
+  subroutine note_front(problem, scene, pressure, exact, outcome)
     type(problem_type), intent(in) :: problem
     type(flow_scene), intent(in) :: scene
-    integer, intent(in) :: variable
-    real(wp), intent(in) :: level, exact
+    real(wp), intent(in) :: pressure, exact
     type(outcome_type), intent(inout) :: outcome
     type(profile_type) :: profile
-    real(wp), allocatable :: line(:, :)
-    real(wp) :: at, middle
+    real(wp) :: found
     integer :: m
     profile = profile_of(scene)
     do m = 1, count(problem%cells > 1)
-      line = line_profile(profile, scene%mesh%cells, lines(:, m))
-      middle = level
-      if (.not. level > 0) middle = 0.5_wp*(line(variable, size(line, 2)) + maxval(line(variable, :)))
-      at = (crossing(line(variable, :), middle, .true.) - 0.5_wp)*scene%mesh%spacing(1)
-      at = sqrt(m*at**2 + (count(problem%cells > 1) - m)*(0.5_wp*scene%mesh%spacing(1))**2)
-      call note_measure(problem, outcome, line_names(m), abs(at - exact)/scene%mesh%spacing(1))
+      found = front_distance(profile, scene%mesh%spacing(1), lines(:, m), problem%cells > 1, 0.5_wp*pressure, exact)
+      call note_measure(problem, outcome, line_names(m), abs(found - exact)/scene%mesh%spacing(1))
     end do
   end subroutine note_front
 
