@@ -69,7 +69,7 @@ contains
       from_left = push < 0
       s = merge(s_left, s_right, from_left)
       m = merge(m_left, m_right, from_left)
-      across = merge(-m_right, m_left, from_left) ! v_hll - v_upwind = across (v_right - v_left)/weight
+      across = -merge(m_right, m_left, from_left) ! v_hll - v_upwind = across (v_right - v_left)/weight
       across = merge(across, 0.0_wp, s*push >= 0)*max(part_left(i), part_right(i))/weight
       v_up = merge(left(i, v), right(i, v), from_left)
       w_up = merge(left(i, w), right(i, w), from_left)
