@@ -90,36 +90,47 @@ contains
     end do
   end function fraction_profile
 
-  !> Distance from the origin at which the pressure falls through a level, towards the diagonal of the directions in `line`. From
-  !> the cells near that ray, since those on it may be sqrt(3) spacings apart: the distance that parts those above the level from
-  !> those below best. active: directions that are there; guess: right to eight spacings h.
-  real(wp) function front_distance(profile, h, line, active, level, guess)
+  !> Distance from the origin, the low corner, at which the pressure falls through a level, from outside towards the diagonal of the
+  !> directions in `line`, by linear interpolation between cells in all directions. cells: of the profile; h: spacing. 0: nowhere.
+  real(wp) function front_distance(profile, cells, h, line, level)
     type(profile_type), intent(in) :: profile
-    real(wp), intent(in) :: h, level, guess
-    logical, intent(in) :: line(3), active(3)
-    integer, parameter :: steps = 1000 !< of the search
-    real(wp), parameter :: reach = 8, aside = 1.5_wp !< in spacings
-    real(wp), allocatable :: distance(:), x(:)
-    logical, allocatable :: above(:)
-    real(wp) :: ray(3), radius, trial, cost, least
+    integer, intent(in) :: cells(3)
+    real(wp), intent(in) :: h, level
+    logical, intent(in) :: line(3)
+    real(wp), parameter :: step = 0.02_wp !< of the search, in spacings
+    real(wp) :: ray(3), at(3)
     integer :: i
-    allocate (distance(0), above(0))
     ray = merge(1.0_wp, 0.0_wp, line)/sqrt(real(count(line), wp))
-    do i = 1, size(profile%x, 2)
-      x = merge(profile%x(:, i), 0.0_wp, active)
-      radius = norm2(x)
-      if (abs(radius - guess) > reach*h .or. norm2(x - dot_product(x, ray)*ray) > aside*h) cycle
-      distance = [distance, radius]
-      above = [above, profile%state(5, i) > level]
+    do i = int(minval(cells, line)*sqrt(real(count(line), wp))/step), 1, -1
+      at = max(ray*i*step, merge(0.5_wp, 0.0_wp, cells > 1)) ! not below the centres of the first cells
+      if (pressure_at(at) > level) exit
     end do
-    front_distance = 0
-    least = huge(least)
-    do i = 0, steps
-      trial = guess + (2*real(i, wp)/steps - 1)*reach*h
-      cost = sum(abs(distance - trial), above .neqv. distance < trial)
-      if (cost < least) front_distance = trial
-      least = min(cost, least)
-    end do
+    front_distance = merge(norm2(at)*h, 0.0_wp, i > 0)
+
+  contains
+
+    !> At a point given in spacings.
+    pure real(wp) function pressure_at(at)
+      real(wp), intent(in) :: at(3)
+      real(wp) :: part(3), weight(0:1, 3)
+      integer :: first(3), second(3), i, j, k, corner(3)
+      first = max(1, min(int(at + 0.5_wp), cells - 1))
+      second = min(first + 1, cells)
+      part = min(max(at + 0.5_wp - first, 0.0_wp), 1.0_wp)
+      weight(0, :) = 1 - part
+      weight(1, :) = part
+      pressure_at = 0
+      do k = 0, 1
+        do j = 0, 1
+          do i = 0, 1
+            corner = merge(second, first, [i, j, k] == 1)
+            pressure_at = pressure_at + weight(i, 1)*weight(j, 2)*weight(k, 3) &
+              *profile%state(5, corner(1) + cells(1)*(corner(2) - 1 + cells(2)*(corner(3) - 1)))
+          end do
+        end do
+      end do
+    end function pressure_at
+
   end function front_distance
 
   !> Position, counted in cells (1 is the centre of the first), where values cross the level: the last or the first. 0: nowhere.

@@ -37,8 +37,8 @@ contains
     end do
   end function problem_named
 
-  !> What is wrong with a problem, in words, empty if nothing: at its own resolution, with the scheme that decks get and both Courant
-  !> numbers that are promised.
+  !> What is wrong with a problem, in words, empty if nothing: at its own resolution, with the scheme that decks get and both
+  !> Courant numbers that are promised.
   function faults_of(name) result(text)
     character(*), intent(in) :: name
     character(:), allocatable :: text

@@ -320,7 +320,7 @@ contains
     integer :: m
     profile = profile_of(scene)
     do m = 1, count(problem%cells > 1)
-      found = front_distance(profile, scene%mesh%spacing(1), lines(:, m), problem%cells > 1, 0.5_wp*pressure, exact)
+      found = front_distance(profile, scene%mesh%cells, scene%mesh%spacing(1), lines(:, m), 0.5_wp*pressure)
       call note_measure(problem, outcome, line_names(m), abs(found - exact)/scene%mesh%spacing(1))
     end do
   end subroutine note_front
