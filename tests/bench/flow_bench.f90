@@ -9,7 +9,7 @@ program flow_bench
   use flow_scheme, only: scheme_type
   use flow_speed, only: speed_type, time_steps
   use flow_state, only: n_repairs, repair_names
-  use flow_suite, only: all_problems, scheme_named
+  use flow_suite, only: all_problems, scheme_named, promised_cfl
   use kinds, only: wp
   use parallel, only: parallel_start, parallel_stop
   use process, only: exit_process
@@ -84,7 +84,7 @@ contains
     real(wp), allocatable :: cfl(:)
     integer :: i, k, s
     schemes = schemes_or(default_scheme)
-    cfl = [0.5_wp, 0.8_wp]
+    cfl = promised_cfl
     if (size(options%cfl) > 0) cfl = options%cfl
     call all_problems(list)
     call print_head()
@@ -125,8 +125,8 @@ contains
 
   subroutine print_head()
     integer :: i
-    print '(a,*(:,",",a))', 'case,title,scheme,cells_x,cells_y,cells_z,cfl,verdict,steps,wall_s,ns_per_cell_stage', &
-      (trim(repair_names(i)), i=1, n_repairs), 'triad_gb_s,multiply_add_gflop_s,measures'
+    print '(a,*(:,",",a))', 'case,scheme,cells_x,cells_y,cells_z,cfl,verdict,steps,wall_s,ns_per_cell_stage', &
+      (trim(repair_names(i)), i=1, n_repairs), 'triad_gb_s,multiply_add_gflop_s,measures,title'
   end subroutine print_head
 
   !> measures: name=value or name=value<bound, with | between.
@@ -146,10 +146,10 @@ contains
     end do
     verdict = outcome%failures()
     if (len(verdict) == 0) verdict = 'passes'
-    write (*, '(2(3a,","),a,3(",",i0),",",f0.3,3a,i0,",",es10.3,",",f0.2,*(:,",",i0))', advance='no') '"', trim(problem%name), &
-      '"', '"', trim(problem%title), '"', trim(outcome%scheme), outcome%cells, outcome%cfl, ',"', verdict, '",', outcome%steps, &
-      outcome%wall, outcome%nanoseconds, outcome%repairs
-    print '(2(",",f0.2),3a)', machine%triad, machine%multiply_add, ',"', measures, '"'
+    write (*, '(3a,3(",",i0),",",f4.2,3a,i0,",",es10.4e2,",",f0.2,*(:,",",i0))', advance='no') trim(problem%name), ',', &
+      trim(outcome%scheme), outcome%cells, outcome%cfl, ',"', verdict, '",', outcome%steps, outcome%wall, outcome%nanoseconds, &
+      outcome%repairs
+    print '(2(",",f0.2),5a)', machine%triad, machine%multiply_add, ',"', measures, '","', trim(problem%title), '"'
     flush (6)
   end subroutine print_line
 
@@ -162,7 +162,7 @@ contains
     integer :: i, k, s, d
     schemes = schemes_or([character(48) :: 'paper', default_scheme])
     call add_speed_scenes(list)
-    print '(a)', 'case,title,scheme,cells,brick,ns_per_cell_stage,bookkeeping_share,triad_gb_s,multiply_add_gflop_s'
+    print '(a)', 'case,scheme,cells,brick,ns_per_cell_stage,bookkeeping_share,triad_gb_s,multiply_add_gflop_s,title'
     do i = 1, size(list)
       if (.not. wanted(list(i)%name, options%cases)) cycle
       d = count(list(i)%cells > 1)
@@ -172,9 +172,8 @@ contains
         do k = 1, 2
           speed = time_steps(list(i), scheme, sides(k, d), merge(3, 10, options%quick))
           machine = calibrate()
-          print '(2(3a,","),a,2(",",i0),4(",",f0.3))', '"', trim(list(i)%name), '"', '"', trim(list(i)%title), '"', &
-            trim(schemes(s)), list(i)%cells(1), sides(k, d), speed%nanoseconds, speed%bookkeeping, machine%triad, &
-            machine%multiply_add
+          print '(3a,2(",",i0),",",f0.2,",",f6.4,2(",",f0.2),3a)', trim(list(i)%name), ',', trim(schemes(s)), list(i)%cells(1), &
+            sides(k, d), speed%nanoseconds, speed%bookkeeping, machine%triad, machine%multiply_add, ',"', trim(list(i)%title), '"'
           flush (6)
         end do
       end do

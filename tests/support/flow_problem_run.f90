@@ -20,6 +20,9 @@ module flow_problem_run
   logical :: failed = .false.
   character(:), allocatable :: failure
 
+  type(problem_type) :: opened !< what turned_start fills a scene with; not host-associated: that would need an executable stack
+  integer :: turn = 0 !< directions that its x is turned by
+
   !> The last fine run: it serves all schemes and resolutions of a problem.
   character(32) :: fine_name = ''
   type(profile_type) :: fine
@@ -82,28 +85,25 @@ contains
     type(scheme_type), intent(in) :: scheme
     type(flow_scene), intent(out) :: scene
     integer, intent(in), optional :: along, brick(3)
-    type(problem_type) :: known
-    integer :: cells(3), turn, bricks(3)
+    integer :: cells(3), bricks(3)
     turn = 0
     if (present(along)) turn = along - 1
-    known = problem
+    opened = problem
     cells = cells_of(problem, n)
-    known%spacing = (problem%upper - problem%lower)/cells
+    opened%spacing = (problem%upper - problem%lower)/cells
     bricks = divisor(cells, best_brick(max(1, count(cells > 1))))
     if (present(brick)) bricks = brick
     call make_scene(scene, problem%eos, cshift(cells, -turn), cshift(problem%lower, -turn), cshift(problem%upper, -turn), &
       cshift(bricks, -turn), face_outflow, turned_start, cshift(problem%faces, -turn, 2), scheme)
-
-  contains
-
-    subroutine turned_start(x, r, a, u, p)
-      real(wp), intent(in) :: x(3)
-      real(wp), intent(out) :: r(:), a(:), u(3), p
-      call known%start(known, cshift(x, turn), r, a, u, p)
-      u = cshift(u, -turn)
-    end subroutine turned_start
-
   end subroutine open_problem
+
+  !> The start of the problem that is being opened, its x along a direction of the mesh.
+  subroutine turned_start(x, r, a, u, p)
+    real(wp), intent(in) :: x(3)
+    real(wp), intent(out) :: r(:), a(:), u(3), p
+    call opened%start(opened, cshift(x, turn), r, a, u, p)
+    u = cshift(u, -turn)
+  end subroutine turned_start
 
   !> Cells of the problem with n along x.
   pure function cells_of(problem, n) result(cells)

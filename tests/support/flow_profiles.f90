@@ -5,7 +5,7 @@ module flow_profiles
   use mixture, only: cell_fractions
   implicit none
   private
-  public :: profile_of, coarse_profile, all_positive, crossing, fraction_profile, line_profile
+  public :: profile_of, coarse_profile, all_positive, crossing, fraction_profile, front_distance
 
   !> All cells of a scene, x fastest.
   type, public :: profile_type
@@ -90,19 +90,48 @@ contains
     end do
   end function fraction_profile
 
-  !> State (5) of the cells (i, i, ...) of the directions that are set, from the low corner on.
-  function line_profile(profile, cells, directions) result(state)
+  !> Distance from the origin, the low corner, at which the pressure falls through a level, from outside towards the diagonal of the
+  !> directions in `line`, by linear interpolation between cells in all directions. cells: of the profile; h: spacing. 0: nowhere.
+  real(wp) function front_distance(profile, cells, h, line, level)
     type(profile_type), intent(in) :: profile
     integer, intent(in) :: cells(3)
-    logical, intent(in) :: directions(3)
-    real(wp), allocatable :: state(:, :)
-    integer :: i, at(3)
-    allocate (state(5, minval(cells, directions)))
-    do i = 1, size(state, 2)
-      at = merge(i, 1, directions)
-      state(:, i) = profile%state(:, at(1) + cells(1)*(at(2) - 1 + cells(2)*(at(3) - 1)))
+    real(wp), intent(in) :: h, level
+    logical, intent(in) :: line(3)
+    real(wp), parameter :: step = 0.02_wp !< of the search, in spacings
+    real(wp) :: ray(3), at(3)
+    integer :: i
+    ray = merge(1.0_wp, 0.0_wp, line)/sqrt(real(count(line), wp))
+    do i = int(minval(cells, line)*sqrt(real(count(line), wp))/step), 1, -1
+      at = max(ray*i*step, merge(0.5_wp, 0.0_wp, cells > 1)) ! not below the centres of the first cells
+      if (pressure_at(at) > level) exit
     end do
-  end function line_profile
+    front_distance = merge(norm2(at)*h, 0.0_wp, i > 0)
+
+  contains
+
+    !> At a point given in spacings.
+    pure real(wp) function pressure_at(at)
+      real(wp), intent(in) :: at(3)
+      real(wp) :: part(3), weight(0:1, 3)
+      integer :: first(3), second(3), i, j, k, corner(3)
+      first = max(1, min(int(at + 0.5_wp), cells - 1))
+      second = min(first + 1, cells)
+      part = min(max(at + 0.5_wp - first, 0.0_wp), 1.0_wp)
+      weight(0, :) = 1 - part
+      weight(1, :) = part
+      pressure_at = 0
+      do k = 0, 1
+        do j = 0, 1
+          do i = 0, 1
+            corner = merge(second, first, [i, j, k] == 1)
+            pressure_at = pressure_at + weight(i, 1)*weight(j, 2)*weight(k, 3) &
+              *profile%state(5, corner(1) + cells(1)*(corner(2) - 1 + cells(2)*(corner(3) - 1)))
+          end do
+        end do
+      end do
+    end function pressure_at
+
+  end function front_distance
 
   !> Position, counted in cells (1 is the centre of the first), where values cross the level: the last or the first. 0: nowhere.
   pure real(wp) function crossing(values, level, last)

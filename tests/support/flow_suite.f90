@@ -1,14 +1,18 @@
 !> All test problems of the flow, and the schemes by name. A new problem is one more entry in one of the modules used here.
 module flow_suite
   use deck_flow, only: reconstruction_names, limiter_names
-  use flow_problem, only: problem_type
+  use flow_problem, only: problem_type, outcome_type
+  use flow_problem_run, only: run_problem
   use flow_scheme, only: scheme_type, muscl, venkatakrishnan
   use gas_problems, only: add_smooth_flows, add_shock_problems
   use interface_problems, only: add_interface_problems
+  use kinds, only: wp
   use tube_problems, only: add_gas_tubes, add_material_tubes
   implicit none
   private
-  public :: all_problems, problem_named, scheme_named
+  public :: all_problems, problem_named, scheme_named, faults_of
+
+  real(wp), parameter, public :: promised_cfl(2) = [0.5_wp, 0.8_wp] !< Courant numbers at which all is to work
 
 contains
 
@@ -32,6 +36,23 @@ contains
       if (list(i)%name == name) problem = list(i)
     end do
   end function problem_named
+
+  !> What is wrong with a problem, in words, empty if nothing: at its own resolution, with the scheme that decks get and both
+  !> Courant numbers that are promised.
+  function faults_of(name) result(text)
+    character(*), intent(in) :: name
+    character(:), allocatable :: text
+    type(problem_type) :: problem
+    type(outcome_type) :: outcome
+    integer :: i
+    text = ''
+    problem = problem_named(name)
+    if (problem%name == '') text = 'there is no problem '//name
+    do i = 1, merge(size(promised_cfl), 0, problem%name /= '')
+      call run_problem(problem, 0, promised_cfl(i), scheme_type(), 'default', outcome)
+      text = text//outcome%failures()
+    end do
+  end function faults_of
 
   !> The scheme that words joined by + make: a reconstruction, a limiter, thinc, sensor. What is not named is as in the paper
   !> (muscl, venkatakrishnan, interfaces left alone, shocks left alone), which is the scheme `paper`. known: false for other words.

@@ -3,7 +3,7 @@
 module gas_problems
   use equation_of_state, only: eos_type, new_ideal_gas
   use flow_problem, only: problem_type, outcome_type, region_type, add_problem, fill_region, bound, note_measure
-  use flow_profiles, only: profile_type, profile_of, line_profile, crossing
+  use flow_profiles, only: profile_type, profile_of, crossing, front_distance
   use flow_scenes, only: flow_scene
   use flow_state, only: face_outflow, face_periodic, face_symmetry
   use kinds, only: wp
@@ -62,7 +62,7 @@ contains
     problem%end_time = 0.038_wp
     problem%is_hard = .true.
     problem%start => three_regions
-    problem%bound = [bound('density', 0.06_wp), bound('velocity', 0.03_wp), bound('pressure', 0.03_wp), &
+    problem%bound = [bound('density', 0.07_wp), bound('velocity', 0.03_wp), bound('pressure', 0.03_wp), &
       bound('mass balance', 1e-11_wp), bound('energy balance', 1e-11_wp)]
     call add_problem(list, problem)
 
@@ -177,7 +177,7 @@ contains
     type(problem_type), allocatable, intent(inout) :: list(:)
     integer, intent(in) :: d
     integer, parameter :: cells(3) = [200, 100, 48]
-    real(wp), parameter :: most_density(3) = [0.05_wp, 0.10_wp, 0.25_wp], most_pressure(3) = [0.03_wp, 0.06_wp, 0.15_wp]
+    real(wp), parameter :: most_density(3) = [0.05_wp, 0.10_wp, 0.25_wp], most_pressure(3) = [0.03_wp, 0.06_wp, 0.20_wp]
     type(problem_type) :: problem
     problem%name = 'noh_'//'123'(d:d)
     problem%title = 'Noh''s implosion in '//'123'(d:d)//' dimensions (Noh 1987)'
@@ -237,7 +237,7 @@ contains
     integer :: d
     d = count(problem%cells > 1)
     implosion%geometry = d
-    call note_front(problem, scene, 5, (4.0_wp**d)/6, implosion%shock_speed()*scene%time, outcome)
+    call note_front(problem, scene, 4.0_wp**d/3, implosion%shock_speed()*scene%time, outcome)
   end subroutine measure_noh
 
   subroutine add_sedov(list)
@@ -248,8 +248,8 @@ contains
     problem%name = 'sedov_3'
     problem%title = 'Blast from a point (Sedov 1959), an octant of it; the shock has come to a distance of 1'
     problem%eos = [new_ideal_gas(1.4_wp)]
-    problem%cells = 64
-    problem%resolutions = [32, 64]
+    problem%cells = 32
+    problem%resolutions = [16, 32]
     problem%upper = 1.2_wp
     problem%faces(1, :) = face_symmetry
     problem%end_time = sqrt(blast%alpha)
@@ -302,29 +302,26 @@ contains
     type(problem_type), intent(in) :: problem
     type(flow_scene), intent(in) :: scene
     type(outcome_type), intent(inout) :: outcome
-    call note_front(problem, scene, 1, 0.0_wp, 1.0_wp, outcome)
+    type(sedov_type) :: blast
+    associate (gamma => problem%eos(1)%gas%gamma)
+      blast = new_sedov(3, gamma, 1.0_wp, 1.0_wp)
+      call note_front(problem, scene, 2/(gamma + 1)*blast%shock_speed(scene%time)**2, blast%shock_radius(scene%time), outcome)
+    end associate
   end subroutine measure_sedov
 
-  !> How many cells the front is off, along an axis and the diagonals: where a variable (1 density, 5 pressure) crosses a level
-  !> (0: half way between its last and largest value) from outside.
-  subroutine note_front(problem, scene, variable, level, exact, outcome)
+  !> How many cells the shock is off, towards an axis and the diagonals. pressure: behind it; exact: its distance from the centre.
+  subroutine note_front(problem, scene, pressure, exact, outcome)
     type(problem_type), intent(in) :: problem
     type(flow_scene), intent(in) :: scene
-    integer, intent(in) :: variable
-    real(wp), intent(in) :: level, exact
+    real(wp), intent(in) :: pressure, exact
     type(outcome_type), intent(inout) :: outcome
     type(profile_type) :: profile
-    real(wp), allocatable :: line(:, :)
-    real(wp) :: at, middle
+    real(wp) :: found
     integer :: m
     profile = profile_of(scene)
     do m = 1, count(problem%cells > 1)
-      line = line_profile(profile, scene%mesh%cells, lines(:, m))
-      middle = level
-      if (.not. level > 0) middle = 0.5_wp*(line(variable, size(line, 2)) + maxval(line(variable, :)))
-      at = (crossing(line(variable, :), middle, .true.) - 0.5_wp)*scene%mesh%spacing(1)
-      at = sqrt(m*at**2 + (count(problem%cells > 1) - m)*(0.5_wp*scene%mesh%spacing(1))**2)
-      call note_measure(problem, outcome, line_names(m), abs(at - exact)/scene%mesh%spacing(1))
+      found = front_distance(profile, scene%mesh%cells, scene%mesh%spacing(1), lines(:, m), 0.5_wp*pressure)
+      call note_measure(problem, outcome, line_names(m), abs(found - exact)/scene%mesh%spacing(1))
     end do
   end subroutine note_front
 
@@ -362,32 +359,36 @@ contains
     real(wp), intent(in) :: x(3)
     real(wp), intent(out) :: r(:), a(:), u(3), p
     call fill_region(problem, merge(1, 2, x(1) < problem%place), r, a, u, p)
-    r = r*(1 + noise*(-1)**floor(x(2)/problem%spacing(2)))
+    ! not quite the same in all pairs of rows: otherwise symmetry would keep the transverse velocity at nil
+    r = r*(1 + noise*(-1)**floor(x(2)/problem%spacing(2))*(1 + 0.5_wp*sin(8*atan(1.0_wp)*x(2)/problem%upper(2))))
   end subroutine noisy_shock
 
-  !> Behind the shock: half the range of density over its mean, row against row, and the largest transverse velocity over the sound
-  !> speed, both as multiples of the noise put in. And how many cells the shock is off.
+  !> In the gas that the shock has passed: half the range of density over its mean, row against row, and the largest transverse
+  !> velocity over the sound speed, both as multiples of the noise put in. The same of density in all that lies behind, where the
+  !> waves of the start still run; and how many cells the shock is off.
   subroutine measure_noise(problem, scene, outcome)
     type(problem_type), intent(in) :: problem
     type(flow_scene), intent(in) :: scene
     type(outcome_type), intent(inout) :: outcome
     type(profile_type) :: profile
     real(wp), allocatable :: state(:, :, :)
-    real(wp) :: density, c, at
-    integer :: i, n(3)
+    real(wp) :: density(scene%mesh%cells(1)), c, at
+    integer :: i, first, last, n(3)
     n = scene%mesh%cells
     profile = profile_of(scene)
     state = reshape(profile%state, [5, n(1), n(2)])
-    density = 0
     associate (behind => problem%region(1))
       at = crossing(state(5, :, 1), 0.5_wp*behind%pressure, .true.)
-      do i = 1, floor(at) - 3
-        density = max(density, 0.5_wp*n(2)*(maxval(state(1, i, :)) - minval(state(1, i, :)))/sum(state(1, i, :)))
+      last = floor(at) - 3
+      first = ceiling((problem%place + behind%velocity(1)*scene%time)/scene%mesh%spacing(1))
+      do i = 1, last
+        density(i) = 0.5_wp*n(2)*(maxval(state(1, i, :)) - minval(state(1, i, :)))/sum(state(1, i, :))/noise
       end do
       c = sqrt(problem%eos(1)%sound_speed_squared(behind%density, behind%pressure))
-      call note_measure(problem, outcome, 'noise of density', density/noise)
-      call note_measure(problem, outcome, 'noise of velocity', maxval(abs(state(3, :, :)))/c/noise)
-      call note_measure(problem, outcome, 'shock', abs(at - 520.5_wp))
+      call note_measure(problem, outcome, 'noise of density', maxval(density(first:last)))
+      call note_measure(problem, outcome, 'noise of velocity', maxval(abs(state(3, first:, :)))/c/noise)
+      call note_measure(problem, outcome, 'noise of all', maxval(density(:last)))
+      call note_measure(problem, outcome, 'shock', abs(at - 0.5_wp - 520/scene%mesh%spacing(1)))
     end associate
   end subroutine measure_noise
 
