@@ -19,7 +19,7 @@ module deck_flow
     real(wp) :: trace_fraction = 1e-8_wp !< volume fraction of a material where there is none of it
     character(word_length) :: reconstruction = 'fifth_order'
     character(word_length) :: limiter = 'third_order' !< of muscl
-    character(word_length) :: interface = 'thinc'
+    character(word_length) :: interface = 'diffuse'
     character(word_length) :: shocks = 'sensor'
     character(word_length) :: riemann = 'hllc'
     real(wp) :: gravity(3) = 0

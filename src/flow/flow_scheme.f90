@@ -11,7 +11,7 @@ module flow_scheme
   type, public :: scheme_type
     integer :: reconstruction = fifth_order
     integer :: limiter = third_order !< of muscl
-    logical :: sharpen = .true. !< interfaces by THINC: see interface_sharpening
+    logical :: sharpen = .false. !< interfaces by THINC: see interface_sharpening
     logical :: cure_shocks = .true. !< no carbuncle: see shock_sensor
   end type scheme_type
 

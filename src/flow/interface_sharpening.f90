@@ -1,6 +1,6 @@
 !> Sharp material interfaces: in mixed cells the volume fraction is a hyperbolic tangent, not a polynomial (THINC; Xiao, Honma &
 !> Kono 2005), its steepness across the direction of the sweep that of the interface's normal (THINC/SW; Xiao, Ii & Chen 2011).
-!> The densities of the materials on the faces keep their reconstructed values, so that pressure and velocity stay uniform across
+!> The materials keep on the faces the densities that they have in the cell, so that pressure and velocity stay uniform across
 !> a moving interface (Shyue & Xiao 2014).
 module interface_sharpening
   use flow_layout, only: layout_type
