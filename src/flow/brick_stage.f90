@@ -121,7 +121,7 @@ contains
       arrival
     real(wp), intent(inout), optional :: impulse(1 - g(1):ld - g(1), 3, 1 - g(2):n(2) + g(2), 1 - g(3):n(3) + g(3))
     real(wp) :: rate(3), weight(3), over_h(3)
-    integer :: j, k, cell_y, face_y, cell_z, face_z, c, x_cells, x_faces, stride(3), reach, back(3)
+    integer :: j, k, cell_y, face_y, cell_z, face_z, c, x_cells, x_faces, stride(3), reach, back(3), last
     logical :: radial, cure
     c = layout%sound_speed_row
     ! along x whole vectors: the rows are padded
@@ -131,7 +131,8 @@ contains
     reach = maxval(stride)
     back = merge(1, 0, stride == reach) ! the neighbour that lies furthest back in memory
     over_h = merge(1/stage%spacing, 0.0_wp, stage%active)
-    rate = stage%dt/stage%spacing
+    rate = merge(stage%dt/stage%spacing, 0.0_wp, stage%active)
+    last = maxval(merge([1, 2, 3], 0, stage%active))
     weight = stage%weight*stage%dt*product(stage%spacing)/stage%spacing
     radial = stage%radial
     s%rate_low(1:n(1)) = merge(stage%dt*area(1:n(1))/volume, rate(1), radial)
@@ -161,9 +162,11 @@ contains
         call book(3, 1.0_wp, s%flux_y(:, :, 0))
       end if
       do j = 1, n(2)
-        call reconstruct_x(j, k)
-        call flux_across(x_faces, 1, j, k, j, k, 1, s%high, s%low(2, 1), s%flux_x)
-        call book_ends(s%flux_x)
+        if (stage%active(1)) then
+          call reconstruct_x(j, k)
+          call flux_across(x_faces, 1, j, k, j, k, 1, s%high, s%low(2, 1), s%flux_x)
+          call book_ends(s%flux_x)
+        end if
         if (stage%active(2)) then
           call reconstruct_y(j + 1, k, s%y_high(1, 1, 1 - cell_y))
           call flux_across(n(1), 2, j, k, j + 1, k, 0, s%y_high(1, 1, cell_y), s%low, s%flux_y(1, 1, 1 - face_y))
@@ -309,11 +312,11 @@ contains
       integer, intent(in) :: j, k
       integer :: m, e
       if (radial) then
-        call difference_radial_fluxes(n(1), ld, layout%n_fluxes, count(stage%active), layout%momentum_flux, s%rate_low, &
+        call difference_radial_fluxes(n(1), ld, layout%n_fluxes, last, layout%momentum_flux, s%rate_low, &
           s%rate_high, &
           rate, from(1, layout%pressure_row, j, k), s%flux_x, s%flux_y(1, 1, face_y), s%flux_y(1, 1, 1 - face_y), s%d)
       else
-        call difference_fluxes(n(1), ld, layout%n_fluxes, count(stage%active), rate, s%flux_x, s%flux_y(1, 1, face_y), &
+        call difference_fluxes(n(1), ld, layout%n_fluxes, last, rate, s%flux_x, s%flux_y(1, 1, face_y), &
           s%flux_y(1, 1, 1 - face_y), s%flux_z(1, 1, j, face_z), s%flux_z(1, 1, j, 1 - face_z), s%d)
       end if
       if (any(abs(stage%gravity) > 0)) call add_gravity(n(1), ld, layout, stage%dt, stage%gravity, from(1, 1, j, k), s%d)

@@ -8,15 +8,16 @@ module flow_differences
 
 contains
 
-  !> What the fluxes of the active directions take from a row of cells in a whole step.
-  pure subroutine difference_fluxes(n, ld, n_fluxes, dimensions, rate, x, y_low, y_high, z_low, z_high, d)
-    integer, intent(in) :: n, ld, n_fluxes, dimensions
+  !> What the fluxes of the active directions take from a row of cells in a whole step. last: the last of them; rates of the
+  !> inactive ones are 0.
+  pure subroutine difference_fluxes(n, ld, n_fluxes, last, rate, x, y_low, y_high, z_low, z_high, d)
+    integer, intent(in) :: n, ld, n_fluxes, last
     real(wp), intent(in) :: rate(3)
     real(wp), intent(in), dimension(ld, n_fluxes) :: x, y_low, y_high, z_low, z_high
     real(wp), intent(inout) :: d(ld, n_fluxes)
     integer :: i, v
     do v = 1, n_fluxes
-      select case (dimensions)
+      select case (last)
       case (1)
         !$omp simd
         do i = 1, n
@@ -40,8 +41,8 @@ contains
   !> The same where x is a radius. rate_low, rate_high: time step times area over volume at the faces across x, for each cell;
   !> rate(2): of the faces across y. The pressure p of the cell is taken off the momentum along x (flux row momentum) before the
   !> areas differ, so that fluid at rest stays so to the last bit.
-  pure subroutine difference_radial_fluxes(n, ld, n_fluxes, dimensions, momentum, rate_low, rate_high, rate, p, x, y_low, y_high, d)
-    integer, intent(in) :: n, ld, n_fluxes, dimensions, momentum
+  pure subroutine difference_radial_fluxes(n, ld, n_fluxes, last, momentum, rate_low, rate_high, rate, p, x, y_low, y_high, d)
+    integer, intent(in) :: n, ld, n_fluxes, last, momentum
     real(wp), intent(in) :: rate_low(n), rate_high(n), rate(3), p(n)
     real(wp), intent(in), dimension(ld, n_fluxes) :: x, y_low, y_high
     real(wp), intent(inout) :: d(ld, n_fluxes)
@@ -58,7 +59,7 @@ contains
           d(i, v) = rate_high(i)*x(i + 1, v) - rate_low(i)*x(i, v)
         end do
       end if
-      if (dimensions == 1) cycle
+      if (last == 1) cycle
       !$omp simd
       do i = 1, n
         d(i, v) = d(i, v) + rate(2)*(y_high(i, v) - y_low(i, v))
