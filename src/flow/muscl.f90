@@ -40,15 +40,16 @@ contains
     integer, intent(in) :: n
     real(wp), intent(in) :: eps2, below(n), here(n), above(n)
     real(wp), intent(inout) :: low(n), high(n)
-    real(wp) :: x, y, xy, s, slope
+    real(wp) :: noise, x, y, xy, s, slope
     integer :: i
+    noise = eps2 ! a load of it in the loop would keep the loop scalar
     !$omp simd private(x, y, xy, s, slope)
     do i = 1, n
       x = above(i) - here(i)
       y = here(i) - below(i)
       xy = x*y
       s = x + y
-      slope = merge((xy + eps2)/(4*(s*s) + (6*eps2 - 10*xy)), 0.0_wp, xy > 0)
+      slope = merge((xy + noise)/(4*(s*s) + (6*noise - 10*xy)), 0.0_wp, xy > 0)
       high(i) = here(i) + (s + x)*slope
       low(i) = here(i) - (s + y)*slope
     end do

@@ -79,7 +79,7 @@ contains
   !> Cells per direction of a brick whose rows and planes stay in the second-level cache.
   pure integer function target_size(dimensions)
     integer, intent(in) :: dimensions
-    integer, parameter :: sizes(3) = [256, 64, 24]
+    integer, parameter :: sizes(3) = [256, 64, 32]
     target_size = sizes(dimensions)
   end function target_size
 
