@@ -1,10 +1,13 @@
-!> Pressure relaxation of one cell by bisection: slow, and sure for any positive masses and fractions.
+!> Pressure relaxation of one cell between brackets: slow, and sure for any positive masses and fractions. Both unknowns, pressure
+!> and each fraction at it, are found by the Illinois variant of the false position, with a bisection after every second step.
 module relaxation_fallback
   use kinds, only: wp
   use equation_of_state, only: eos_type
   implicit none
   private
   public :: relax_cell
+
+  integer, parameter :: most_steps = 200
 
 contains
 
@@ -17,8 +20,8 @@ contains
     real(wp), intent(inout) :: a(:)
     real(wp), intent(out) :: p
     real(wp), dimension(size(eos)) :: energy, own, floor
-    real(wp) :: lowest, low, high
-    integer :: i, k
+    real(wp) :: lowest, low, high, above, below, surplus, x
+    integer :: i, k, side
     lowest = -huge(1.0_wp)
     do k = 1, size(eos)
       floor(k) = eos(k)%lowest_pressure(m(k)/a(k))
@@ -33,16 +36,32 @@ contains
     low = minval(own)
     high = maxval(own)
     if (low <= lowest) low = lowest + 1e-12_wp*(high - lowest)
-    do i = 1, 200
-      p = 0.5_wp*(low + high)
-      if (low - lowest < 0.25_wp*(high - lowest)) p = lowest + sqrt((low - lowest)*(high - lowest))
-      if (p <= low .or. p >= high) exit
-      if (total(p) > 1) then
-        low = p
+    ! in logarithms, where gases are straight lines
+    low = log(low - lowest)
+    high = log(high - lowest)
+    above = log(total(lowest + exp(low)))
+    below = log(total(lowest + exp(high)))
+    x = 0.5_wp*(low + high)
+    side = 0
+    do i = 1, most_steps
+      x = 0.5_wp*(low + high)
+      if (mod(i, 3) > 0 .and. above > below) x = low + (high - low)*above/(above - below)
+      if (x <= low .or. x >= high) exit
+      surplus = log(total(lowest + exp(x)))
+      if (surplus > 0) then
+        low = x
+        above = surplus
+        if (side == 1) below = 0.5_wp*below
+        side = 1
       else
-        high = p
+        high = x
+        below = surplus
+        if (side == -1) above = 0.5_wp*above
+        side = -1
       end if
+      if (abs(surplus) <= epsilon(1.0_wp)) exit
     end do
+    p = lowest + exp(x)
     do k = 1, size(eos)
       a(k) = fraction_at(eos(k), m(k), a(k), energy(k), p)
     end do
@@ -79,8 +98,8 @@ contains
   pure real(wp) function fraction_at(eos, m, a0, e0, p) result(a)
     type(eos_type), intent(in) :: eos
     real(wp), intent(in) :: m, a0, e0, p
-    real(wp) :: g, low, high
-    integer :: i
+    real(wp) :: g, low, high, below, above, missing
+    integer :: i, side
     g = eos%grueneisen
     if (eos%is_gas) then
       a = g*(e0 + p*a0)/(eos%gas%gamma*(p + eos%gas%p_infinity))
@@ -93,14 +112,27 @@ contains
       low = high
       high = 2*high
     end do
-    do i = 1, 100
+    below = missing_work(low)
+    above = missing_work(high)
+    a = high
+    side = 0
+    do i = 1, most_steps
       a = 0.5_wp*(low + high)
+      if (mod(i, 3) > 0 .and. above > below) a = low - (high - low)*below/(above - below)
       if (a <= low .or. a >= high) exit
-      if (missing_work(a) < 0) then
+      missing = missing_work(a)
+      if (missing < 0) then
         low = a
+        below = missing
+        if (side == -1) above = 0.5_wp*above
+        side = -1
       else
         high = a
+        above = missing
+        if (side == 1) below = 0.5_wp*below
+        side = 1
       end if
+      if (abs(missing) <= epsilon(1.0_wp)*abs(e0)) exit
     end do
   contains
     pure real(wp) function missing_work(trial)
