@@ -17,7 +17,7 @@ program flow_bench
   implicit none
   character(48), parameter :: accuracy_schemes(4) = [character(48) :: 'paper', 'muscl+third_order+sensor', &
     'fifth_order+sensor', 'fifth_order+thinc+sensor']
-  character(48), parameter :: default_scheme(1) = [character(48) :: 'fifth_order+thinc+sensor']
+  character(48), parameter :: default_scheme(1) = [character(48) :: 'fifth_order+sensor']
   type(options_type) :: options
   type(calibration_type) :: machine
   type(problem_type), allocatable :: list(:)
