@@ -22,7 +22,7 @@ module deck_flow
     character(word_length) :: interface = 'thinc'
     character(word_length) :: shocks = 'sensor'
     character(word_length) :: riemann = 'hllc'
-    real(wp) :: burn_width = 3 !< cells over which the energy of a programmed charge is released
+    real(wp) :: burn_width = 5 !< cells over which the energy of a programmed charge is released
     real(wp) :: gravity(3) = 0
     real(wp) :: ambient_pressure = unset !< overpressures are against it; set by the checks from the last 'all' region
     integer :: line = 0
