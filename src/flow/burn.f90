@@ -116,16 +116,20 @@ contains
   end function arrival_at
 
   !> Time at which the front of a charge is at x: of its detonators the one counts that comes first. What lies within half a length
-  !> of release of a detonator burns together, so that nothing has burnt before the detonator's time.
+  !> of release of a detonator burns together, so that nothing has burnt before the detonator's time. Outside of the charge the front
+  !> comes earlier again, as if mirrored at the surface: what has burnt and flies off, faster than the front, must not take its
+  !> energy back.
   pure real(wp) function arrival_time(charge, length, active, x) result(arrival)
     type(burning_charge), intent(in) :: charge
     real(wp), intent(in) :: length, x(3)
     logical, intent(in) :: active(3)
+    real(wp) :: outside
     integer :: i
+    outside = max(charge%shape%distance(x), 0.0_wp)
     arrival = huge(1.0_wp)
     do i = 1, size(charge%detonator)
       arrival = min(arrival, charge%detonator(i)%time + &
-        max(distance_from(charge%detonator(i), active, x), 0.5_wp*length)/charge%speed)
+        max(distance_from(charge%detonator(i), active, x) - 2*outside, 0.5_wp*length)/charge%speed)
     end do
   end function arrival_time
 

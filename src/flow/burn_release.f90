@@ -1,9 +1,10 @@
 !> Programmed burn: the energy of an explosive is released as the detonation front, whose arrival time in each cell is known from
 !> the start, passes over it. The part that has not burnt falls to nil as the square of the time left: a steady front stays on its
 !> Rayleigh line, where p = p_CJ (1 - sqrt(unburnt part)) for a constant gamma, so the pressure rises about linearly and meets the
-!> products without the infinite slope that a linear release would give it there. The total energy per volume that the flow conserves is E + q m u with q the energy of detonation per mass, m the partial density and u the unburnt part,
-!> and its flux carries q u with the mass; so what is released over the whole burn is q times the mass, to round-off, whatever the
-!> mesh and the time step.
+!> products without the infinite slope that a linear release would give it there. The total energy per volume that the flow
+!> conserves is E + q m u with q the energy of detonation per mass, m the partial density and u the unburnt part, and its flux
+!> carries q u with the mass; so what is released over the whole burn is q times the mass, to round-off, whatever the mesh and the
+!> time step.
 module burn_release
   use kinds, only: wp
   implicit none
