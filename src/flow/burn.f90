@@ -20,6 +20,7 @@ module burn
   integer, parameter, public :: detonator_point = 1, detonator_line = 2, detonator_plane = 3
   real(wp), parameter, public :: burnt_long_ago = -1e30_wp !< arrival where nothing is to burn
   real(wp), parameter :: margin = 4 !< cells around a charge that count as it
+  real(wp), parameter :: earlier = 8 !< way of the front by which a place outside of a charge burns earlier, over its distance
 
   type, public :: detonator_type
     integer :: kind = detonator_point
@@ -116,9 +117,8 @@ contains
   end function arrival_at
 
   !> Time at which the front of a charge is at x: of its detonators the one counts that comes first. What lies within half a length
-  !> of release of a detonator burns together, so that nothing has burnt before the detonator's time. Outside of the charge the front
-  !> comes earlier again, as if mirrored at the surface: what has burnt and flies off, faster than the front, must not take its
-  !> energy back.
+  !> of release of a detonator burns together, so that nothing has burnt before the detonator's time. Outside of the charge it is the
+  !> earlier the further out: what flies off, faster than the front, goes on burning and must not take energy back.
   pure real(wp) function arrival_time(charge, length, active, x) result(arrival)
     type(burning_charge), intent(in) :: charge
     real(wp), intent(in) :: length, x(3)
@@ -129,7 +129,7 @@ contains
     arrival = huge(1.0_wp)
     do i = 1, size(charge%detonator)
       arrival = min(arrival, charge%detonator(i)%time + &
-        max(distance_from(charge%detonator(i), active, x) - 2*outside, 0.5_wp*length)/charge%speed)
+        max(distance_from(charge%detonator(i), active, x) - earlier*outside, 0.5_wp*length)/charge%speed)
     end do
   end function arrival_time
 
