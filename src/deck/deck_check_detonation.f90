@@ -1,21 +1,16 @@
 !> Checks of programmed charges and of the detonators that light them.
 module deck_check_detonation
   use kinds, only: wp
-  use chapman_jouguet, only: chapman_jouguet_state
   use constants, only: unset
   use deck_check_shape, only: check_point
-  use deck_keys, only: key_table, word_length
+  use deck_keys, only: key_table
   use deck_problems, only: problem_list
   use deck_tables, only: find_table
-  use deck_types, only: deck_type, find_material, detonator_group
-  use equation_of_state, only: eos_type
-  use material_eos, only: eos_of
+  use deck_types, only: deck_type, detonator_group
   use text, only: str
   implicit none
   private
   public :: check_detonation
-
-  real(wp), parameter :: speed_tolerance = 0.03_wp !< of a given detonation speed against that of the JWL
 
 contains
 
@@ -39,9 +34,7 @@ contains
     integer, intent(in) :: i
     type(key_table), intent(in) :: table
     type(problem_list), intent(inout) :: problems, warnings
-    type(eos_type) :: eos
-    real(wp) :: speed, pressure, relative_volume
-    integer :: j, m
+    integer :: j
     associate (charge => deck%charge(i))
       if (charge%detonation /= 'programmed') then
         if (table%is_given('detonation_speed')) call warnings%add_at_key(table, 'detonation_speed', &
@@ -56,19 +49,8 @@ contains
         exit
       end do
       if (problems%n > 0) return
-      if (.not. deck%flow%ambient_pressure > 0) then
-        call problems%add_at_key(table, 'detonation', 'unburnt explosive needs an ambient pressure above 0')
-        return
-      end if
-      m = find_material(deck, charge%explosive)
-      eos = eos_of(deck%material(m))
-      call chapman_jouguet_state(eos%jwl, speed, pressure, relative_volume)
-      if (.not. speed > 0) then
-        call problems%add_at_key(table, 'explosive', 'the JWL constants of '''//trim(charge%explosive)//''' allow no detonation')
-      else if (charge%detonation_speed > 0) then
-        if (abs(charge%detonation_speed - speed) > speed_tolerance*speed) call warnings%add_at_key(table, 'detonation_speed', &
-          'the JWL constants of '''//trim(charge%explosive)//''' make it '//str(speed, 4))
-      end if
+      if (.not. deck%flow%ambient_pressure > 0) call problems%add_at_key(table, 'detonation', &
+        'unburnt explosive needs an ambient pressure above 0')
     end associate
   end subroutine check_burning
 

@@ -117,8 +117,8 @@ contains
   end function arrival_at
 
   !> Time at which the front of a charge is at x: of its detonators the one counts that comes first. What lies within half a length
-  !> of release of a detonator burns together, so that nothing has burnt before the detonator's time. Outside of the charge it is the
-  !> earlier the further out: what flies off, faster than the front, goes on burning and must not take energy back.
+  !> of release of a detonator burns together, so that nothing has burnt before the detonator's time. Outside of the charge
+  !> it is the earlier the further out: what flies off, faster than the front, goes on burning and must not take energy back.
   pure real(wp) function arrival_time(charge, length, active, x) result(arrival)
     type(burning_charge), intent(in) :: charge
     real(wp), intent(in) :: length, x(3)
@@ -157,7 +157,7 @@ contains
   real(wp) function unburnt_energy(mesh, flow) result(energy)
     type(mesh_type), intent(in) :: mesh
     type(flow_type), intent(in) :: flow
-    real(wp) :: partial(1, mesh%n_local), total(1), row(mesh%brick_cells(1))
+    real(wp) :: partial(1, mesh%n_local), total(1), row(mesh%brick_cells(1)), here(mesh%brick_cells(1))
     integer :: b, j, k, m
     energy = 0
     if (.not. flow%burn_speed > 0) return
@@ -170,12 +170,9 @@ contains
           do j = 1, mesh%brick_cells(2)
             do m = 1, flow%n_materials
               if (.not. flow%burn_energy(m) > 0) cycle
-              if (allocated(flow%open(b)%a)) then
-                where (flow%open(b)%a(1:nx, 1, j, k) > 0) row = row &
-                  + flow%burn_energy(m)*w(1:nx, m, j, k)*unburnt_part(flow%time, arrival(1:nx, 1, j, k), flow%burn_rate(m))
-              else
-                row = row + flow%burn_energy(m)*w(1:nx, m, j, k)*unburnt_part(flow%time, arrival(1:nx, 1, j, k), flow%burn_rate(m))
-              end if
+              here = flow%burn_energy(m)*w(1:nx, m, j, k)*unburnt_part(flow%time, arrival(1:nx, 1, j, k), flow%burn_rate(m))
+              if (allocated(flow%open(b)%a)) here = merge(here, 0.0_wp, flow%open(b)%a(1:nx, 1, j, k) > 0)
+              row = row + here
             end do
           end do
         end do

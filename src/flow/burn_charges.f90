@@ -4,15 +4,17 @@ module burn_charges
   use chapman_jouguet, only: chapman_jouguet_state
   use deck_types, only: deck_type, charge_group, detonator_group
   use equation_of_state, only: eos_type
-  use errors, only: warn
+  use errors, only: fatal, warn, exit_bad_input
   use flow_shapes, only: filled_shape
   use kinds, only: wp
   use mesh, only: mesh_type
+  use parallel, only: is_root
   use text, only: str
   implicit none
   private
   public :: charges_of_deck, is_programmed, unburnt_state_energy
 
+  real(wp), parameter :: speed_tolerance = 0.03_wp !< of a given detonation speed against that of the JWL
   real(wp), parameter :: near = 3 !< cells that a detonator may lie outside of its charge without a warning
 
 contains
@@ -53,12 +55,19 @@ contains
     unburnt_state_energy = eos%energy(eos%density, ambient_pressure)
   end function unburnt_state_energy
 
-  pure real(wp) function speed_of(charge, eos) result(speed)
+  !> Speed of the front: the given one, or that of Chapman and Jouguet. Fatal (bad input) where the JWL has none.
+  real(wp) function speed_of(charge, eos) result(speed)
     type(charge_group), intent(in) :: charge
     type(eos_type), intent(in) :: eos
     real(wp) :: pressure, relative_volume
+    call chapman_jouguet_state(eos%jwl, speed, pressure, relative_volume)
+    if (.not. speed > 0) call fatal('charge on line '//str(charge%line)//': the JWL constants of '''// &
+      trim(charge%explosive)//''' allow no detonation', exit_bad_input)
+    if (.not. charge%detonation_speed > 0) return
+    if (abs(charge%detonation_speed - speed) > speed_tolerance*speed .and. is_root()) call warn('charge on line '//str(charge%line)// &
+      ': detonation_speed is '//str(charge%detonation_speed, 4)//', the JWL constants of '''//trim(charge%explosive)// &
+      ''' make it '//str(speed, 4))
     speed = charge%detonation_speed
-    if (.not. speed > 0) call chapman_jouguet_state(eos%jwl, speed, pressure, relative_volume)
   end function speed_of
 
   !> The detonators that light charge number c.
@@ -105,7 +114,7 @@ contains
     type(detonator_type) :: detonator
     real(wp) :: distance
     integer :: i, c
-    if (.not. allocated(deck%detonator)) return
+    if (.not. allocated(deck%detonator) .or. .not. is_root()) return
     do i = 1, size(deck%detonator)
       detonator = detonator_of(deck%detonator(i))
       if (detonator%kind == detonator_plane) cycle

@@ -266,7 +266,8 @@ contains
       str(flow%eos(k)%largest_density())//' only')
   end subroutine test_eos
 
-  !> The highest pressure of the first state, of explosive that burns at rest, and of the impact of its fastest parts on each other with a shock speed of c + 2 u.
+  !> The highest pressure of the first state, of explosive that burns at rest, and of the impact of its fastest parts on each other
+  !> with a shock speed of c + 2 u.
   pure real(wp) function highest_pressure(flow, filling)
     type(flow_type), intent(in) :: flow
     type(filling_type), intent(in) :: filling(:)
