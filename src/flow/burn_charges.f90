@@ -65,8 +65,8 @@ contains
       trim(charge%explosive)//''' allow no detonation', exit_bad_input)
     if (.not. charge%detonation_speed > 0) return
     if (abs(charge%detonation_speed - speed) > speed_tolerance*speed .and. is_root()) call warn('charge on line '// &
-      str(charge%line)//': detonation_speed is '//str(charge%detonation_speed, 4)//', the JWL constants of '''//trim(charge%explosive)// &
-      ''' make it '//str(speed, 4))
+      str(charge%line)//': detonation_speed is '//str(charge%detonation_speed, 4)//', the JWL constants of '''// &
+      trim(charge%explosive)//''' make it '//str(speed, 4))
     speed = charge%detonation_speed
   end function speed_of
 
