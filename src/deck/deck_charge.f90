@@ -3,7 +3,7 @@ module deck_charge
   use kinds, only: wp
   use constants, only: unset
   use deck_keys, only: key_table, word_length
-  use units, only: of_length, of_mass
+  use units, only: of_length, of_mass, of_velocity
   implicit none
   private
   public :: charge_keys
@@ -16,7 +16,8 @@ module deck_charge
     real(wp) :: axis(3) = [0.0_wp, 0.0_wp, 1.0_wp] !< of the cylinder
     real(wp) :: length_to_diameter = 1 !< of the cylinder
     real(wp) :: proportions(3) = 1 !< edges of the box, up to a factor
-    character(word_length) :: detonation = 'instantaneous'
+    character(word_length) :: detonation = 'instantaneous' !< 'instantaneous', 'programmed'
+    real(wp) :: detonation_speed = unset !< of a programmed one; unset: that of Chapman and Jouguet
     integer :: line = 0
   end type charge_group
 
@@ -33,7 +34,8 @@ contains
     call table%add('axis', group%axis)
     call table%add('length_to_diameter', group%length_to_diameter, more_than=0.0_wp)
     call table%add('proportions', group%proportions, more_than=0.0_wp)
-    call table%add('detonation', group%detonation, [character(word_length) :: 'instantaneous'])
+    call table%add('detonation', group%detonation, [character(word_length) :: 'instantaneous', 'programmed'])
+    call table%add('detonation_speed', group%detonation_speed, of_velocity, more_than=0.0_wp, usual=[500.0_wp, 2e4_wp])
   end subroutine charge_keys
 
 end module deck_charge

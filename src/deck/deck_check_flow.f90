@@ -3,6 +3,7 @@ module deck_check_flow
   use kinds, only: wp
   use constants, only: unset
   use deck_assign, only: exact_text
+  use deck_check_detonation, only: check_detonation
   use deck_check_shape, only: check_point, check_shape, inside_shape, shape_type
   use deck_keys, only: key_table
   use deck_problems, only: problem_list, nearest_or_allowed
@@ -35,11 +36,13 @@ contains
     call check_inflow(deck, tables(find_table(tables, 'boundary', 1)), problems, warnings)
     if (problems%n == 0) call check_cover(deck, shapes, tables, problems)
     call count_materials(deck, problems)
-    if (deck%flow%ambient_pressure > unset) return
-    if (size(deck%region) > 0) deck%flow%ambient_pressure = deck%region(1)%pressure
-    do i = 1, size(deck%region)
-      if (deck%region(i)%shape == 'all') deck%flow%ambient_pressure = deck%region(i)%pressure
-    end do
+    if (.not. deck%flow%ambient_pressure > unset) then
+      if (size(deck%region) > 0) deck%flow%ambient_pressure = deck%region(1)%pressure
+      do i = 1, size(deck%region)
+        if (deck%region(i)%shape == 'all') deck%flow%ambient_pressure = deck%region(i)%pressure
+      end do
+    end if
+    call check_detonation(deck, tables, problems, warnings)
   end subroutine check_flow
 
   !> Looks a material up by the name under a key. The name takes the spelling of the material; i is 0 if there is none.

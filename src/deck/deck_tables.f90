@@ -9,6 +9,7 @@ module deck_tables
   use deck_material, only: material_keys
   use deck_region, only: region_keys
   use deck_charge, only: charge_keys
+  use deck_detonator, only: detonator_keys
   use deck_solid, only: solid_keys
   use deck_body, only: body_keys, hole_keys
   use deck_reinforcement, only: reinforcement_keys
@@ -20,8 +21,9 @@ module deck_tables
   private
   public :: allocate_groups, group_count, group_number, make_table, make_tables, find_table, may_repeat
 
-  character(16), parameter, public :: group_names(15) = [character(16) :: 'run', 'mesh', 'boundary', 'flow', 'material', &
-    'region', 'charge', 'solid', 'body', 'hole', 'reinforcement', 'clamp', 'coupling', 'gauge', 'output'] !< in deck order
+  character(16), parameter, public :: group_names(16) = [character(16) :: 'run', 'mesh', 'boundary', 'flow', 'material', &
+    'region', 'charge', 'detonator', 'solid', 'body', 'hole', 'reinforcement', 'clamp', 'coupling', 'gauge', &
+    'output'] !< in deck order
 
 contains
 
@@ -38,7 +40,7 @@ contains
   pure logical function may_repeat(group)
     character(*), intent(in) :: group
     select case (group)
-    case ('material', 'region', 'charge', 'body', 'hole', 'reinforcement', 'clamp', 'gauge')
+    case ('material', 'region', 'charge', 'detonator', 'body', 'hole', 'reinforcement', 'clamp', 'gauge')
       may_repeat = .true.
     case default
       may_repeat = .false.
@@ -49,8 +51,9 @@ contains
   subroutine allocate_groups(deck, count)
     type(deck_type), intent(inout) :: deck
     integer, intent(in) :: count(size(group_names))
-    allocate (deck%material(count(5)), deck%region(count(6)), deck%charge(count(7)), deck%body(count(9)))
-    allocate (deck%hole(count(10)), deck%reinforcement(count(11)), deck%clamp(count(12)), deck%gauge(count(14)))
+    allocate (deck%material(count(5)), deck%region(count(6)), deck%charge(count(7)), deck%detonator(count(8)))
+    allocate (deck%body(count(10)), deck%hole(count(11)), deck%reinforcement(count(12)), deck%clamp(count(13)))
+    allocate (deck%gauge(count(15)))
   end subroutine allocate_groups
 
   !> How many groups of this name the deck type holds (1 for one that may not be repeated, whether the file has it or not).
@@ -65,6 +68,8 @@ contains
       n = size(deck%region)
     case ('charge')
       n = size(deck%charge)
+    case ('detonator')
+      n = size(deck%detonator)
     case ('body')
       n = size(deck%body)
     case ('hole')
@@ -99,6 +104,8 @@ contains
       call region_keys(deck%region(i), table)
     case ('charge')
       call charge_keys(deck%charge(i), table)
+    case ('detonator')
+      call detonator_keys(deck%detonator(i), table)
     case ('solid')
       call solid_keys(deck%solid, table)
     case ('body')

@@ -9,6 +9,7 @@ module deck_types
   use deck_material, only: material_group
   use deck_region, only: region_group
   use deck_charge, only: charge_group
+  use deck_detonator, only: detonator_group
   use deck_solid, only: solid_group
   use deck_body, only: body_group, hole_group
   use deck_reinforcement, only: reinforcement_group
@@ -20,7 +21,8 @@ module deck_types
   implicit none
   private
   public :: unset, word_length, path_length
-  public :: run_group, mesh_group, boundary_group, flow_group, material_group, region_group, charge_group, solid_group
+  public :: run_group, mesh_group, boundary_group, flow_group, material_group, region_group, charge_group, &
+    detonator_group, solid_group
   public :: body_group, hole_group, reinforcement_group, clamp_group, coupling_group, gauge_group, output_group
   public :: find_material, find_body
 
@@ -36,6 +38,7 @@ module deck_types
     type(material_group), allocatable :: material(:)
     type(region_group), allocatable :: region(:)
     type(charge_group), allocatable :: charge(:)
+    type(detonator_group), allocatable :: detonator(:)
     type(solid_group) :: solid
     type(body_group), allocatable :: body(:)
     type(hole_group), allocatable :: hole(:)

@@ -1,5 +1,6 @@
 !> The books of the whole scene: what is there, what crossed its borders, what flow and solid gave each other, and what is missing.
 module balance
+  use burn, only: unburnt_energy
   use flow_totals, only: flow_totals_type, sum_flow
   use immersed_boundary, only: booked_impulse, booked_reference, booked_kinetic, booked_gas
   use kinds, only: wp
@@ -17,7 +18,7 @@ module balance
     type(solid_totals_type) :: solid
     real(wp) :: mass = 0 !< flow, solid and what left
     real(wp) :: momentum(3) = 0 !< flow and solid less all impulses from outside
-    real(wp) :: energy = 0 !< flow, solid and what left, what forcing took and did not give to the solid included
+    real(wp) :: energy = 0 !< flow, unburnt explosive, solid and what left, what forcing took and did not give to the solid included
     real(wp) :: momentum_scale = 0 !< sum of the sizes of all momenta and impulses
     real(wp) :: exchanged(3) = 0 !< momentum that the solid has from the flow
     real(wp) :: work_on_solid = 0 !< work of the flow on the solid
@@ -25,6 +26,7 @@ module balance
     real(wp) :: uncovered_mass = 0, uncovered_energy = 0 !< gas added where cells opened less gas taken where they closed
     real(wp) :: support_impulse(3) = 0 !< of all supports and symmetry faces on the solid
     real(wp) :: boundary_energy = 0 !< that entered the flow through the faces of the domain
+    real(wp) :: unburnt = 0 !< energy that programmed charges are still to release
   end type balance_type
 
 contains
@@ -43,7 +45,8 @@ contains
       associate (flow => balance%flow)
         balance%mass = sum(flow%mass) - sum(flow%entered(:n, :))
         balance%momentum = flow%momentum - sum(flow%entered(m:m + 2, :), dim=2)
-        balance%energy = flow%kinetic + sum(flow%internal) - sum(flow%entered(e, :))
+        balance%unburnt = unburnt_energy(scene%mesh, scene%flow)
+        balance%energy = flow%kinetic + sum(flow%internal) + balance%unburnt - sum(flow%entered(e, :))
         balance%boundary_energy = sum(flow%entered(e, :))
         balance%momentum_scale = sum(abs(flow%momentum)) + sum(abs(flow%entered(m:m + 2, :)))
       end associate

@@ -68,6 +68,7 @@ contains
     allocate (counts(scene%mesh%n_local))
     call open_restart(file, name, scene%mesh)
     scene%clock%time = file%time
+    scene%flow%time = file%time
     scene%clock%step = file%step
     call restart_get(file, 'flow_steps', scene%clock%n_flow_steps)
     call restart_get(file, 'solid_steps', scene%clock%n_solid_steps)

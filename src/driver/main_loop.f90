@@ -1,5 +1,6 @@
 !> The method, step by step: reading this from top to bottom tells what a step does.
 module main_loop
+  use burn, only: end_burn
   use flow_step, only: advance_stage, accept_step
   use immersed_boundary, only: immerse_solid, find_wall_velocity, force_first_state, force_stage, collect_force
   use kinds, only: wp
@@ -31,6 +32,8 @@ contains
   subroutine advance_scene(scene, next_event)
     type(scene_type), intent(inout) :: scene
     real(wp), intent(in) :: next_event
+    scene%flow%time = scene%clock%time
+    call end_burn(scene%flow)
     call choose_time_step(scene, next_event)
     if (scene%coupled) call meet_solid(scene)
     if (scene%has_flow) call advance_flow(scene)
@@ -56,7 +59,6 @@ contains
     integer :: stage
     left = scene%clock%dt
     scene%clock%flow_steps = 0
-    scene%flow%time = scene%clock%time
     do while (left > 0)
       call flow_part(scene, left, dt)
       if (scene%coupled) call force_first_state(scene%mesh, scene%flow, scene%coupling)

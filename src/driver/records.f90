@@ -20,6 +20,7 @@ module records
   use snapshots, only: snapshots_type, start_snapshots, put_flow_snapshot, put_solid_snapshot, put_peak_snapshot
   use stopping, only: stop_reason, wall_seconds, go_on, reason_name
   use summary, only: write_summary, summary_figures
+  use text, only: str
   use units, only: unit_labels, unit_labels_type
   implicit none
   private
@@ -180,6 +181,8 @@ contains
     if (records%reason /= go_on) figures%ended_by = trim(reason_name(records%reason))
     if (records%reason == go_on .and. .not. records%reached_end) figures%ended_by = 'option'
     call write_summary(scene, balance, figures, records%folder//'/summary.json')
+    if (scene%flow%burn_total > 0) call say('detonation: '//str(scene%flow%burn_total - balance%unburnt)//' of '// &
+      str(scene%flow%burn_total)//' '//trim(records%labels%energy)//' released')
     if (records%reason /= go_on) call say('stopped by '//trim(reason_name(records%reason))//' after writing a restart file')
     call say('results are in '//records%folder)
   end subroutine close_records

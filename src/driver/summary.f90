@@ -77,6 +77,12 @@ contains
     call json_put(file, 'momentum', figures%drift(2))
     call json_put(file, 'energy', figures%drift(3))
     call json_end(file)
+    if (scene%flow%burn_total > 0) then
+      call json_begin(file, 'detonation')
+      call json_put(file, 'energy_of_charges', scene%flow%burn_total)
+      call json_put(file, 'energy_released', scene%flow%burn_total - balance%unburnt)
+      call json_end(file)
+    end if
     if (scene%coupled) then
       call json_begin(file, 'coupling')
       call json_put(file, 'impulse_on_solid', balance%exchanged)

@@ -84,7 +84,11 @@ contains
     type(scene_type), intent(in) :: scene
     type(flow_limit_type), intent(in) :: limit
     character(:), allocatable :: line
-    line = 'flow, '//trim(scene%flow%name(max(limit%material, 1)))//' at '//place(scene, limit%position)
+    if (limit%is_front) then
+      line = 'flow, front of the detonation'
+    else
+      line = 'flow, '//trim(scene%flow%name(max(limit%material, 1)))//' at '//place(scene, limit%position)
+    end if
   end function flow_limiter
 
   function solid_limiter(scene, limit) result(line)

@@ -310,7 +310,7 @@ contains
     !> What fluxes, gravity and the energy of burning explosive take from the cells of row (j, k).
     subroutine take_differences(j, k)
       integer, intent(in) :: j, k
-      integer :: m, e
+      integer :: m, e, one_row(3)
       if (radial) then
         call difference_radial_fluxes(n(1), ld, layout%n_fluxes, last, layout%momentum_flux, s%rate_low, &
           s%rate_high, &
@@ -321,11 +321,12 @@ contains
       end if
       if (any(abs(stage%gravity) > 0)) call add_gravity(n(1), ld, layout, stage%dt, stage%gravity, from(1, 1, j, k), s%d)
       if (.not. present(arrival)) return
+      one_row = merge([1, ld, ld*(n(2) + 2*g(2))], 0, stage%active) ! arrival has but one
       do m = 1, layout%n_materials
         if (.not. stage%burn_energy(m) > 0) cycle
         e = layout%energy_flux
         if (layout%n_materials > 1) e = layout%first_material_energy_flux + m - 1
-        call release_energy(n(1), stage%part, stage%time, stage%burn_energy(m), stage%burn_rate(m), stride, reach, &
+        call release_energy(n(1), stage%part, stage%time, stage%burn_energy(m), stage%burn_rate(m), one_row, maxval(one_row), &
           arrival(1 - back(1), 1, j - back(2), k - back(3)), from(1, m, j, k), start(1, m, j, k), s%d(1, m), s%rate_low, &
           s%rate_high, &
           rate, s%flux_x(1, m), s%flux_y(1, m, face_y), s%flux_y(1, m, 1 - face_y), s%flux_z(1, m, j, face_z), &

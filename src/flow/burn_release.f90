@@ -1,8 +1,10 @@
 !> Programmed burn: the energy of an explosive is released as the detonation front, whose arrival time in each cell is known from
-!> the start, passes over it. The part that has burnt rises linearly with time around the arrival. The total energy per volume
-!> that the flow conserves is E + q m u with q the energy of detonation per mass, m the partial density and u the unburnt part,
-!> and its flux carries q u with the mass; so what is released over the whole burn is q times the mass, to round-off, whatever the
-!> mesh and the time step.
+!> the start, passes over it. The part that has not burnt falls to nil as the square of the time left: a steady front stays on its
+!> Rayleigh line, where p = p_CJ (1 - sqrt(unburnt part)) for a constant gamma, so the pressure rises about linearly and meets the
+!> products without the infinite slope that a linear release would give it there. The total energy per volume that the flow
+!> conserves is E + q m u with q the energy of detonation per mass, m the partial density and u the unburnt part, and its flux
+!> carries q u with the mass; so what is released over the whole burn is q times the mass, to round-off, whatever the mesh and the
+!> time step.
 module burn_release
   use kinds, only: wp
   implicit none
@@ -42,10 +44,10 @@ contains
     end function on_face
   end subroutine release_energy
 
-  !> Part of an explosive that has not burnt at a time, for a front that arrives at `arrival`.
+  !> Part of an explosive that has not burnt at a time, for a front whose middle arrives at `arrival`.
   elemental real(wp) function unburnt_part(time, arrival, burn_rate)
     real(wp), intent(in) :: time, arrival, burn_rate
-    unburnt_part = min(max(0.5_wp - burn_rate*(time - arrival), 0.0_wp), 1.0_wp)
+    unburnt_part = min(max(0.5_wp - burn_rate*(time - arrival), 0.0_wp), 1.0_wp)**2
   end function unburnt_part
 
 end module burn_release

@@ -1,5 +1,7 @@
 !> The flow at the start of a scene, from its deck: materials, boundary conditions, regions and charges.
 module flow_initial
+  use burn, only: set_up_burn, unburnt_energy
+  use burn_charges, only: charges_of_deck, is_programmed
   use constants, only: pi
   use deck_types, only: deck_type, find_material, material_group, charge_group, region_group, unset, word_length
   use equation_of_state, only: eos_type
@@ -49,6 +51,9 @@ contains
     flow%gravity = merge(deck%flow%gravity, 0.0_wp, mesh%active)
     call set_faces(deck, flow)
     filling = fillings(mesh, deck, used)
+    associate (charge => filling(size(deck%region) + 1:))
+      call set_up_burn(mesh, flow, charges_of_deck(mesh, deck, charge%shape, charge%material, eos), deck%flow%burn_width)
+    end associate
     call reference_states(flow, filling, density, pressure)
     do i = 1, size(used)
       call test_eos(flow, filling, i, density(i), pressure(i))
@@ -56,6 +61,7 @@ contains
     flow%floor_pressure = 1e-9_wp*minval(abs(filling%pressure), abs(filling%pressure) > 0)
     call fill_bricks(mesh, flow, filling, density, pressure)
     call weigh_charges(mesh, deck, flow, filling)
+    flow%burn_total = unburnt_energy(mesh, flow)
     if (any(flow%face == face_inflow)) call prepare_inflow(deck, flow, used, density, pressure)
     call set_noise(mesh, flow)
   end subroutine setup_flow
@@ -137,6 +143,7 @@ contains
           f%density = group%density
           eos = eos_of(group)
           f%pressure = eos%pressure(f%density, group%energy_per_volume/group%density)
+          if (is_programmed(deck%charge(i))) f%pressure = deck%flow%ambient_pressure
           f%shape = charge_shape(deck%charge(i), deck%charge(i)%mass/group%density, mesh%active)
         end associate
       end associate
@@ -259,13 +266,20 @@ contains
       str(flow%eos(k)%largest_density())//' only')
   end subroutine test_eos
 
-  !> The highest pressure of the first state, and of the impact of its fastest parts on each other with a shock speed of c + 2 u.
+  !> The highest pressure of the first state, of explosive that burns at rest, and of the impact of its fastest parts on each other
+  !> with a shock speed of c + 2 u.
   pure real(wp) function highest_pressure(flow, filling)
     type(flow_type), intent(in) :: flow
     type(filling_type), intent(in) :: filling(:)
     real(wp) :: u, r, p
     integer :: i, j
     highest_pressure = maxval(filling%pressure)
+    do i = 1, size(filling)
+      associate (f => filling(i), eos => flow%eos(filling(i)%material))
+        highest_pressure = max(highest_pressure, &
+          eos%pressure(f%density, eos%energy(f%density, f%pressure) + flow%burn_energy(f%material)))
+      end associate
+    end do
     do i = 1, size(filling)
       r = filling(i)%density
       p = filling(i)%pressure

@@ -54,6 +54,7 @@ module flow_state
     real(wp), allocatable :: burn_energy(:), burn_rate(:) !< of each material: see burn_release
     real(wp) :: burn_speed = 0 !< fastest front, 0 when all has burnt
     real(wp) :: burn_end = 0 !< time at which all has burnt
+    real(wp) :: burn_total = 0 !< energy that burning releases from the start to the end
     real(wp), allocatable :: books(:, :, :) !< what entered: conserved quantity, face (x low, x high, ...), local brick
     type(repair_log) :: repairs
     type(stage_scratch) :: scratch

@@ -16,11 +16,13 @@ module flow_time_step
     real(wp) :: position(3) = 0 !< of its centre
     integer :: material = 0 !< the one that fills most of it
     real(wp) :: speed = 0 !< fastest signal in it, |u| + c
+    logical :: is_front = .false. !< what limits is no cell but the front of a detonation
   end type flow_limit_type
 
 contains
 
-  !> dt = cfl / max over the cells of the sum over the active directions of (|u| + c)/h. The same on every rank.
+  !> dt = cfl / max over the cells of the sum over the active directions of (|u| + c)/h, or of D/h while a detonation runs with
+  !> speed D. The same on every rank.
   function flow_limit(mesh, flow) result(limit)
     type(mesh_type), intent(in) :: mesh
     type(flow_type), intent(in) :: flow
@@ -71,6 +73,12 @@ contains
     limit%cell = nint(companion(4:6))
     limit%material = nint(companion(7))
     limit%speed = companion(8)
+    if (.not. flow%burn_speed > 0 .or. flow%time > flow%burn_end) return
+    if (flow%burn_speed*sum(over_h) > largest) then
+      limit%is_front = .true.
+      limit%speed = flow%burn_speed
+      limit%dt = flow%cfl/(flow%burn_speed*sum(over_h))
+    end if
   contains
     pure real(wp) function signal_rate(cell)
       real(wp), intent(in) :: cell(:)

@@ -100,6 +100,7 @@ contains
     type(flow_scene), intent(inout) :: scene
     real(wp), intent(in) :: dt
     integer :: stage
+    scene%flow%time = scene%time
     do stage = 1, 3
       call advance_stage(scene%mesh, scene%halo, scene%flow, stage, dt)
     end do
