@@ -54,7 +54,8 @@ def hemisphere(folder):
 
 
 def points(folder):
-    """Scaled distance, peak overpressure, impulse and time of arrival of each gauge."""
+    """Scaled distance, peak overpressure, impulse and time of arrival of each gauge, whose name is its distance: '0.50 m'. The wave arrives
+    with a tenth of its peak; the positive phase ends where the overpressure is negative for the first time after it."""
     with open(folder / "gauges.csv", newline="") as file:
         reader = csv.reader(file)
         heads = next(reader)
@@ -67,6 +68,8 @@ def points(folder):
             continue
         over, impulse = data[:, column], data[:, column + 1]
         top = int(np.argmax(over))
+        if not 0 < top < len(over) - 1:  # the wave has not passed it
+            continue
         arrived = int(np.argmax(over > 0.1 * over[top]))
         negative = np.nonzero(over[top:] < 0)[0]
         end = top + negative[0] if len(negative) else len(over) - 1
