@@ -1,5 +1,5 @@
-"""Incident blast wave of a surface burst against the curves of Kingery & Bulmash: peak overpressure, impulse of the positive phase and
-time of arrival at the gauges of one or more runs in one spherical direction, whose charge is a sphere of twice the mass.
+"""Incident blast wave of a surface burst against the curves of Kingery & Bulmash: peak overpressure, impulse of the positive phase
+and time of arrival at the gauges of one or more runs in one spherical direction, whose charge is a sphere of twice the mass.
 
 Source of the curves: Kingery & Bulmash, Airblast parameters from TNT spherical air burst and hemispherical surface burst,
 ARBRL-TR-02555 (1984), in the metric form of Swisdak, Simplified Kingery airblast calculations (1994). log10 y is a polynomial of
@@ -54,8 +54,8 @@ def hemisphere(folder):
 
 
 def points(folder):
-    """Scaled distance, peak overpressure, impulse and time of arrival of each gauge, whose name is its distance: '0.50 m'. The wave arrives
-    with a tenth of its peak; the positive phase ends where the overpressure is negative for the first time after it."""
+    """Scaled distance, peak overpressure, impulse and time of arrival of each gauge, whose name is its distance: '0.50 m'. The wave
+    arrives with a tenth of its peak; the positive phase ends where the overpressure is negative for the first time after it."""
     with open(folder / "gauges.csv", newline="") as file:
         reader = csv.reader(file)
         heads = next(reader)
