@@ -3,6 +3,7 @@ module deck_check
   use kinds, only: wp
   use constants, only: unset
   use deck_check_flow, only: check_flow
+  use deck_check_geometry, only: check_geometry
   use deck_check_material, only: check_material, check_name
   use deck_check_shape, only: check_point
   use deck_check_solid, only: check_solid
@@ -35,6 +36,7 @@ contains
     if (.not. (deck%has_flow .or. deck%has_solid)) call problems%add(0, '', &
       'nothing to compute: the deck has no &region, no &charge and no &body')
     call check_mesh(deck, tables(find_table(tables, 'mesh', 1)), problems)
+    call check_geometry(deck, tables, problems)
     call check_boundary(deck, tables(find_table(tables, 'boundary', 1)), problems)
     do i = 1, size(deck%material)
       call check_material(deck%material(i), trim(deck%run%units), tables(find_table(tables, 'material', i)), problems, warnings)

@@ -3,6 +3,7 @@ module plan
   use chapman_jouguet, only: chapman_jouguet_state
   use deck_types, only: deck_type, find_material
   use equation_of_state, only: eos_type
+  use geometry, only: geometry_names
   use kinds, only: wp, i8
   use log, only: say
   use material_eos, only: eos_of
@@ -36,9 +37,9 @@ contains
       bytes = 0
       if (deck%has_flow) bytes = bytes + 3*bytes_per_real*flow_rows(deck)*stored
       bytes = bytes + bytes_per_real*particle_columns*particles
-      call say('mesh: '//product_text(mesh, mesh%cells)//' cells of '//trim(str(mesh%spacing(1)))//' '//trim(labels%length)// &
-               ', '//str(size(mesh%brick))//' bricks of '//product_text(mesh, mesh%brick_cells)//', '//str(n_ranks)// &
-               trim(merge(' rank ', ' ranks', n_ranks == 1)))
+      call say('mesh: '//geometry_text(mesh)//product_text(mesh, mesh%cells)//' cells of '//trim(str(mesh%spacing(1)))//' '// &
+               trim(labels%length)//', '//str(size(mesh%brick))//' bricks of '//product_text(mesh, mesh%brick_cells)//', '// &
+               str(n_ranks)//trim(merge(' rank ', ' ranks', n_ranks == 1)))
       if (deck%has_flow) call say('flow: '//trim(materials_text(deck))//', scheme '//trim(deck%flow%limiter)//' + '// &
                                   trim(deck%flow%riemann))
       call tell_explosives(deck, labels)
@@ -52,6 +53,15 @@ contains
                str(dt, 3)//' '//trim(labels%time)//', about '//duration_text(seconds))
     end associate
   end subroutine print_plan
+
+  !> What kind of mesh it is, where it is not Cartesian.
+  function geometry_text(mesh) result(text)
+    type(mesh_type), intent(in) :: mesh
+    character(:), allocatable :: text
+    text = ''
+    if (mesh%radial_power > 0) text = trim(geometry_names(mesh%radial_power))//', '
+    if (mesh%radial_power > 0 .and. mesh%active(2)) text = 'axisymmetric, '
+  end function geometry_text
 
   !> Detonation of each explosive of a charge, as it follows from its own JWL constants.
   subroutine tell_explosives(deck, labels)

@@ -45,6 +45,7 @@ contains
       call build_mesh(scene%mesh, deck%mesh%cells, deck%mesh%lower, deck%mesh%upper, deck%mesh%brick, periodic, layers)
       if (deck%has_solid) call build_mesh(scene%mesh, deck%mesh%cells, deck%mesh%lower, deck%mesh%upper, deck%mesh%brick, &
                                           periodic, layers, even_axes(deck, scene%mesh))
+      scene%mesh%radial_power = deck%mesh%radial_power()
       call assign_ranks(scene%mesh, brick_weights(deck, scene%mesh))
       scene%has_flow = deck%has_flow
       scene%has_solid = deck%has_solid

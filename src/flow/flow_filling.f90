@@ -20,7 +20,7 @@ module flow_filling
 
 contains
 
-  !> Part of a box that each filling shows in, later ones covering earlier ones; sum 1 where all is filled.
+  !> Part of the volume of a box that each filling shows in, later ones covering earlier ones; sum 1 where all is filled.
   pure subroutine share_of_regions(filling, center, width, share)
     type(filling_type), intent(in) :: filling(:)
     real(wp), intent(in) :: center(3), width(3)
@@ -34,8 +34,8 @@ contains
     real(wp), intent(in) :: center(3), width(3), weight
     integer, intent(in) :: level
     real(wp), intent(inout) :: share(:)
-    real(wp) :: half, d, left, part, offset(3)
-    integer :: r, i, children
+    real(wp) :: half, d, left, part, whole, child(3), middle(3)
+    integer :: r, i
     logical :: upper(3)
     left = weight
     do r = size(filling), 1, -1
@@ -45,13 +45,13 @@ contains
         if (d >= half) cycle
         if (d > -half) then
           if (level < filling(r)%halvings) then
-            children = 2**count(shape%active)
+            whole = shape%volume_of_box(center, width)
+            child = merge(0.5_wp*width, width, shape%active)
             do i = 0, 7
               upper = [btest(i, 0), btest(i, 1), btest(i, 2)]
               if (any(upper .and. .not. shape%active)) cycle
-              offset = merge(merge(0.25_wp, -0.25_wp, upper)*width, 0.0_wp, shape%active)
-              call add_shares(filling(:r), center + offset, merge(0.5_wp*width, width, shape%active), level + 1, &
-                left/children, share)
+              middle = center + merge(merge(0.25_wp, -0.25_wp, upper)*width, 0.0_wp, shape%active)
+              call add_shares(filling(:r), middle, child, level + 1, left*(shape%volume_of_box(middle, child)/whole), share)
             end do
             return
           end if

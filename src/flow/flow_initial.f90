@@ -11,6 +11,7 @@ module flow_initial
   use flow_scheme, only: scheme_type, scheme_from_words
   use flow_shapes, only: filled_shape, volume_in_box, shape_all, shape_box, shape_sphere, shape_cylinder, shape_half_space
   use flow_state, only: flow_type, allocate_flow, set_inflow, face_outflow, face_symmetry, face_inflow, face_periodic
+  use geometry, only: cell_volumes
   use kinds, only: wp
   use log, only: say
   use material_eos, only: eos_of
@@ -144,13 +145,14 @@ contains
           eos = eos_of(group)
           f%pressure = eos%pressure(f%density, group%energy_per_volume/group%density)
           if (is_programmed(deck%charge(i))) f%pressure = deck%flow%ambient_pressure
-          f%shape = charge_shape(deck%charge(i), deck%charge(i)%mass/group%density, mesh%active)
+          f%shape = charge_shape(deck%charge(i), deck%charge(i)%mass/group%density, mesh%active, mesh%radial_power)
         end associate
       end associate
     end do
     filling%shape%active(1) = mesh%active(1)
     filling%shape%active(2) = mesh%active(2)
     filling%shape%active(3) = mesh%active(3)
+    filling%shape%radial_power = mesh%radial_power
     do i = 1, size(filling)
       filling(i)%halvings = halvings_for(size_of(filling(i)%shape), maxval(mesh%spacing, mesh%active), mesh%dimensions)
     end do
@@ -190,15 +192,18 @@ contains
     end if
   end function region_shape
 
-  !> Shape of a charge of given volume (per length on a 2-D mesh, per area on a 1-D mesh).
-  pure function charge_shape(charge, volume, active) result(shape)
+  !> Shape of a charge of given volume (per length on a 2-D mesh, per area on a 1-D mesh). A radius of the mesh (radial_power) adds
+  !> the directions that it turns through: a charge on the axis or at the centre is a body of 3 dimensions, of 2 on a cylindrical
+  !> 1-D mesh.
+  pure function charge_shape(charge, volume, active, radial_power) result(shape)
     type(charge_group), intent(in) :: charge
     real(wp), intent(in) :: volume
     logical, intent(in) :: active(3)
+    integer, intent(in) :: radial_power
     type(filled_shape) :: shape
     real(wp) :: edges(3), axis(3), length, diameter
     integer :: n
-    n = count(active)
+    n = count(active) + radial_power
     select case (lowercase(trim(charge%shape)))
     case ('box')
       shape%kind = shape_box
@@ -324,18 +329,20 @@ contains
     type(deck_type), intent(in) :: deck
     type(flow_type), intent(in) :: flow
     type(filling_type), intent(in) :: filling(:)
-    real(wp) :: share(size(filling)), placed(size(deck%charge), mesh%n_local), total(size(deck%charge)), center(3), inside
+    real(wp) :: share(size(filling)), placed(size(deck%charge), mesh%n_local), total(size(deck%charge)), center(3), inside, &
+      volume(mesh%brick_cells(1))
     integer :: b, i, j, k, n, c
     if (size(deck%charge) == 0) return
     n = size(deck%region)
     placed = 0
     do b = 1, mesh%n_local
+      volume = cell_volumes(mesh, b)
       do k = 1, mesh%brick_cells(3)
         do j = 1, mesh%brick_cells(2)
           do i = 1, mesh%brick_cells(1)
             center = mesh%brick(mesh%local(b))%origin + ([i, j, k] - 0.5_wp)*mesh%spacing
             call share_of_regions(filling, center, mesh%spacing, share)
-            placed(:, b) = placed(:, b) + share(n + 1:)*filling(n + 1:)%density*mesh%cell_volume
+            placed(:, b) = placed(:, b) + share(n + 1:)*filling(n + 1:)%density*volume(i)
           end do
         end do
       end do

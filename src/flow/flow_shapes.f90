@@ -1,6 +1,7 @@
 !> Shapes that regions and charges fill, in the active directions of the mesh only: on a 2-D mesh a sphere is a disc, on a 1-D
-!> mesh a slab.
+!> mesh a slab. Where x is a radius, what is in the plane of the mesh turns about the axis or centre.
 module flow_shapes
+  use geometry, only: ring_volume
   use kinds, only: wp
   implicit none
   private
@@ -11,6 +12,7 @@ module flow_shapes
   type, public :: filled_shape
     integer :: kind = shape_all
     logical :: active(3) = .true. !< directions of the mesh that count
+    integer :: radial_power = 0 !< of the mesh
     real(wp) :: lower(3) = 0, upper(3) = 0 !< box, along its own edges
     real(wp) :: center(3) = 0 !< sphere
     real(wp) :: radius = 0 !< sphere, cylinder
@@ -19,6 +21,7 @@ module flow_shapes
   contains
     procedure :: distance
     procedure :: part_of_box
+    procedure :: volume_of_box
   end type filled_shape
 
 contains
@@ -81,6 +84,13 @@ contains
     end select
   end function part_of_box
 
+  !> Volume of a small box, of the whole turn where x is a radius.
+  pure real(wp) function volume_of_box(self, center, width)
+    class(filled_shape), intent(in) :: self
+    real(wp), intent(in) :: center(3), width(3)
+    volume_of_box = product(width)*ring_volume(self%radial_power, center(1) - 0.5_wp*width(1), center(1) + 0.5_wp*width(1))
+  end function volume_of_box
+
   !> Part of a box on the inner side of a plane at the given distance from its centre.
   pure real(wp) function behind_plane(distance, normal, width)
     real(wp), intent(in) :: distance, normal(3), width(3)
@@ -104,9 +114,9 @@ contains
     volume = 0
     if (d >= 0.5_wp*norm2(merge(width, 0.0_wp, shape%active))) return
     if (d <= -0.5_wp*norm2(merge(width, 0.0_wp, shape%active))) then
-      volume = product(width)
+      volume = shape%volume_of_box(center, width)
     else if (depth == 0) then
-      volume = product(width)*shape%part_of_box(center, width)
+      volume = shape%volume_of_box(center, width)*shape%part_of_box(center, width)
     else
       child = merge(0.5_wp*width, width, shape%active)
       do i = 0, 7

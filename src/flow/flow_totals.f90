@@ -1,6 +1,7 @@
 !> Sums over the flow: masses, momentum and energies of the open cells, and what entered through the faces of the domain.
 module flow_totals
   use flow_state, only: flow_type
+  use geometry, only: cell_volumes
   use kinds, only: wp
   use mesh, only: mesh_type
   use reductions, only: reduce_sum
@@ -10,7 +11,7 @@ module flow_totals
 
   type, public :: flow_totals_type
     real(wp), allocatable :: mass(:) !< by material
-    real(wp) :: momentum(3) = 0
+    real(wp) :: momentum(3) = 0 !< along a radius of the mesh it is no sum, and 0
     real(wp), allocatable :: internal(:) !< by material
     real(wp) :: kinetic = 0
     real(wp), allocatable :: entered(:, :) !< conserved quantity, face (x low, x high, y low, ...) since the start
@@ -33,7 +34,11 @@ contains
       allocate (row(ld, sums))
       call sum_brick(b, ld, row)
       do q = 1, sums
-        partial(q, b) = mesh%cell_volume*sum(row(1:mesh%brick_cells(1), q))
+        if (mesh%radial_power > 0) then
+          partial(q, b) = sum(cell_volumes(mesh, b)*row(1:mesh%brick_cells(1), q))
+        else
+          partial(q, b) = mesh%cell_volume*sum(row(1:mesh%brick_cells(1), q))
+        end if
       end do
       partial(sums + 1:, b) = reshape(flow%books(:, :, b), [6*flow%layout%n_conserved])
       deallocate (row)
@@ -44,6 +49,10 @@ contains
     totals%momentum = total(2*n + 1:2*n + 3)
     totals%kinetic = total(2*n + 4)
     totals%entered = reshape(total(sums + 1:), [flow%layout%n_conserved, 6])
+    if (mesh%radial_power > 0) then
+      totals%momentum(1) = 0
+      totals%entered(flow%layout%momentum_flux, :) = 0
+    end if
   contains
     !> Adds all rows of cells of a brick, cell by cell along x: the sum along x comes last.
     subroutine sum_brick(b, ld, row)

@@ -18,11 +18,11 @@ contains
   pure function cell_volumes(mesh, b) result(volume)
     type(mesh_type), intent(in) :: mesh
     integer, intent(in) :: b
-    real(wp) :: volume(mesh%brick_cells(1)), inner
+    real(wp) :: volume(mesh%brick_cells(1)), r(mesh%brick_cells(1) + 1)
     integer :: i
+    r = face_positions(mesh, b)
     do i = 1, size(volume)
-      inner = mesh%brick(mesh%local(b))%origin(1) + (i - 1)*mesh%spacing(1)
-      volume(i) = mesh%cell_volume*ring_volume(mesh%radial_power, inner, inner + mesh%spacing(1))
+      volume(i) = mesh%cell_volume*ring_volume(mesh%radial_power, r(i), r(i + 1))
     end do
   end function cell_volumes
 
@@ -30,18 +30,27 @@ contains
   pure function x_face_areas(mesh, b) result(area)
     type(mesh_type), intent(in) :: mesh
     integer, intent(in) :: b
-    real(wp) :: area(mesh%brick_cells(1) + 1), r
-    integer :: i
-    do i = 1, size(area)
-      r = mesh%brick(mesh%local(b))%origin(1) + (i - 1)*mesh%spacing(1)
-      select case (mesh%radial_power)
-      case (cylindrical); area(i) = 2*pi*r
-      case (spherical); area(i) = 4*pi*r*r
-      case default; area(i) = 1
-      end select
-      area(i) = area(i)*mesh%spacing(2)*mesh%spacing(3)
-    end do
+    real(wp) :: area(mesh%brick_cells(1) + 1), r(mesh%brick_cells(1) + 1)
+    r = face_positions(mesh, b)
+    select case (mesh%radial_power)
+    case (cylindrical); area = 2*pi*r
+    case (spherical); area = 4*pi*r*r
+    case default; area = 1
+    end select
+    area = area*mesh%spacing(2)*mesh%spacing(3)
   end function x_face_areas
+
+  !> Positions of the faces across x, counted from the low face of the domain: the same bits however it is cut into bricks.
+  pure function face_positions(mesh, b) result(x)
+    type(mesh_type), intent(in) :: mesh
+    integer, intent(in) :: b
+    real(wp) :: x(mesh%brick_cells(1) + 1)
+    integer :: i, before
+    before = mesh%brick(mesh%local(b))%location(1)*mesh%brick_cells(1)
+    do i = 1, size(x)
+      x(i) = mesh%lower(1) + (before + i - 1)*mesh%spacing(1)
+    end do
+  end function face_positions
 
   !> Volume between two radii over their difference; 1 on a Cartesian mesh.
   pure real(wp) function ring_volume(radial_power, inner, outer)

@@ -16,7 +16,7 @@ module restart_files
   public :: restart_file, create_restart, open_restart, close_restart, newest_restart, forget_restarts
   public :: restart_has
 
-  integer, parameter :: format_version = 1
+  integer, parameter :: format_version = 2
 
   !> A restart file being written or read.
   type :: restart_file
@@ -57,18 +57,19 @@ contains
     call put_attribute(file%hdf5, group, 'step', [step])
     call put_attribute(file%hdf5, group, 'cells', mesh%cells)
     call put_attribute(file%hdf5, group, 'brick_cells', mesh%brick_cells)
+    call put_attribute(file%hdf5, group, 'radial_power', [mesh%radial_power])
     call put_attribute(file%hdf5, group, 'lower', mesh%lower)
     call put_attribute(file%hdf5, group, 'upper', mesh%upper)
     call create_group(file%hdf5, 'state')
     call create_group(file%hdf5, 'bricks')
   end subroutine create_restart
 
-  !> Opens a restart file for reading; fatal unless it is of this mesh (cells, bricks, extent) and format.
+  !> Opens a restart file for reading; fatal unless it is of this mesh (cells, bricks, geometry, extent) and format.
   subroutine open_restart(file, name, mesh)
     type(restart_file), intent(out) :: file
     character(*), intent(in) :: name
     type(mesh_type), intent(in) :: mesh
-    integer :: numbers(3), version(1), step(1)
+    integer :: numbers(3), version(1), step(1), power(1)
     real(wp) :: extent(3), time(1)
     file%name = name
     call note_share(file, mesh)
@@ -83,6 +84,8 @@ contains
     call get_attribute(file%hdf5, 'brisance', 'brick_cells', numbers)
     if (any(numbers /= mesh%brick_cells)) call fatal('restart file "'//name//'" has bricks of '//list_of(numbers)// &
       ' cells, the deck of '//list_of(mesh%brick_cells))
+    call get_attribute(file%hdf5, 'brisance', 'radial_power', power)
+    if (power(1) /= mesh%radial_power) call fatal('restart file "'//name//'" is of another geometry than the deck')
     call get_attribute(file%hdf5, 'brisance', 'lower', extent)
     if (any(abs(extent - mesh%lower) > 0)) call fatal('restart file "'//name//'" has another lower corner than the deck')
     call get_attribute(file%hdf5, 'brisance', 'upper', extent)

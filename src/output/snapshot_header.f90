@@ -1,5 +1,6 @@
 !> What every snapshot file says of itself beside its data: a group /brisance that other readers pass over.
 module snapshot_header
+  use geometry, only: geometry_names
   use hdf5_attributes, only: put_attribute
   use hdf5_files, only: hdf5_file, create_group
   use kinds, only: wp
@@ -33,6 +34,7 @@ contains
     call put_attribute(file, group, 'step', [clock%step])
     call put_attribute(file, group, 'length_unit', clock%length_unit)
     call put_attribute(file, group, 'time_unit', clock%time_unit)
+    call put_attribute(file, group, 'geometry', trim(geometry_names(mesh%radial_power)))
     call put_attribute(file, group, 'cells', mesh%cells)
     call put_attribute(file, group, 'active', merge(1, 0, mesh%active))
     call put_attribute(file, group, 'lower', mesh%lower)

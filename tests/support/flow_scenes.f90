@@ -33,8 +33,9 @@ module flow_scenes
 contains
 
   !> A scene on the given cells and bricks (0: one brick) with all faces alike (see flow_state), or each as faces says (low and high
-  !> face of each direction; periodic ones in pairs). What enters at inflow faces is to be set after. scheme: if not the paper's.
-  subroutine make_scene(scene, eos, cells, lower, upper, brick, face, start, faces, scheme)
+  !> face of each direction; periodic ones in pairs). What enters at inflow faces is to be set after. scheme: if not the paper's;
+  !> radial_power: of module geometry, if not Cartesian.
+  subroutine make_scene(scene, eos, cells, lower, upper, brick, face, start, faces, scheme, radial_power)
     type(flow_scene), intent(out) :: scene
     type(eos_type), intent(in) :: eos(:)
     integer, intent(in) :: cells(3), brick(3), face
@@ -42,6 +43,7 @@ contains
     procedure(start_state) :: start
     integer, intent(in), optional :: faces(2, 3)
     type(scheme_type), intent(in), optional :: scheme
+    integer, intent(in), optional :: radial_power
     type(scheme_type) :: chosen
     real(wp) :: r(size(eos)), a(size(eos)), u(3), p, x(3)
     integer :: b, i, j, k, each(2, 3)
@@ -51,6 +53,7 @@ contains
     if (present(scheme)) chosen = scheme
     call build_mesh(scene%mesh, cells, lower, upper, merge(brick, cells, brick > 0), each(1, :) == face_periodic, &
       ghost_layers(chosen))
+    if (present(radial_power)) scene%mesh%radial_power = radial_power
     call plan_halo(scene%mesh, scene%halo)
     scene%flow%scheme = chosen
     call allocate_flow(scene%flow, scene%mesh, spread('gas', 1, size(eos)), eos)

@@ -6,11 +6,17 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "plottin
 
 import shock_helium  # noqa: E402
 import slab  # noqa: E402
+import surface_burst  # noqa: E402
 import taylor  # noqa: E402
 
 MEASURES = {"shock-helium": shock_helium.measure, "slab": slab.measure, "taylor": taylor.measure}
+TOGETHER = {"surface-burst": surface_burst.measure_all}  # all runs side by side
 
-if len(sys.argv) < 3 or sys.argv[1] not in MEASURES:
-    sys.exit("usage: tools/measure shock-helium|slab|taylor RUN_FOLDER...")
-for folder in sys.argv[2:]:
-    MEASURES[sys.argv[1]](pathlib.Path(folder))
+if len(sys.argv) < 3 or sys.argv[1] not in {**MEASURES, **TOGETHER}:
+    sys.exit("usage: tools/measure shock-helium|slab|surface-burst|taylor RUN_FOLDER...")
+folders = [pathlib.Path(folder) for folder in sys.argv[2:]]
+if sys.argv[1] in TOGETHER:
+    TOGETHER[sys.argv[1]](folders)
+else:
+    for folder in folders:
+        MEASURES[sys.argv[1]](folder)
