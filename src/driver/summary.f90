@@ -72,6 +72,7 @@ contains
     if (particles > 0 .and. figures%solid_steps > 0) call json_put(file, 'ns_per_particle_and_step', &
       1e9_wp*n_ranks*scene%watch%seconds('solid')/(particles*figures%solid_steps))
     call json_put(file, 'peak_memory_bytes', figures%memory)
+    if (scene%has_flow) call json_put(file, 'peak_memory_bytes_per_cell', figures%memory/cells)
     call json_begin(file, 'drift')
     call json_put(file, 'mass', figures%drift(1))
     call json_put(file, 'momentum', figures%drift(2))

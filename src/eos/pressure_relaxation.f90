@@ -42,7 +42,7 @@ contains
       square = weight1 + weight2
       linear = weight1*p2 + weight2*p1 - gamma2*excess1 - gamma1*excess2
       constant = gamma2*excess1*p2 + gamma1*excess2*p1
-      root = 0.5_wp*(abs(linear) + sqrt(max(linear*linear + 4*square*constant, 0.0_wp)))
+      root = max(0.5_wp*(abs(linear) + sqrt(max(linear*linear + 4*square*constant, 0.0_wp))), tiny(1.0_wp))
       rise = merge(constant, root, linear >= 0)/merge(root, square, linear >= 0)
       a(i) = a(i) + (excess1 - a(i)*rise)/(gamma1*(p1 + rise))
     end do

@@ -224,7 +224,7 @@ contains
     pure integer function whole(n_cells)
       integer, intent(in) :: n_cells
       integer, parameter :: vector = 4
-      whole = min(vector*((n_cells + vector - 1)/vector), ld - 2*g(1) - 1)
+      whole = min(vector*((n_cells + vector - 1)/vector), ld - g(1))
     end function whole
 
     !> Face values in one direction of the row (j, k) from cell i on.

@@ -20,8 +20,9 @@ contains
     real(wp), intent(in) :: value
     integer, parameter :: vector = 4
     integer :: width
-    width = n(1) + 2*ghost(1)
-    width = vector*((width + 2*vector - 1)/vector)
+    ! whole vectors for the cells 0..n+1 and what their reconstruction reads, and for kernels that take cells eight by eight
+    width = max(vector*((n(1) + 1 + vector)/vector) + 2*max(ghost(1) - 1, 0), n(1) + 2*ghost(1), 8*((n(1) + 7)/8))
+    width = vector*((width + vector - 1)/vector)
     if (allocated(b%a)) deallocate (b%a)
     allocate (b%a(1 - ghost(1):width - ghost(1), n_var, 1 - ghost(2):n(2) + ghost(2), 1 - ghost(3):n(3) + ghost(3)))
     b%a = value
