@@ -2,7 +2,7 @@
 !> active directions, and the update, with no more in memory than a plane of z fluxes.
 module brick_stage
   use burn_release, only: release_energy
-  use face_states, only: flatten_next_to_closed, replace_near_closed, take_cell_values
+  use face_states, only: all_open, flatten_next_to_closed, replace_near_closed, take_cell_values
   use fifth_order_upwind, only: reconstruct_fifth_order, keep_below_one
   use flow_differences, only: difference_fluxes, difference_radial_fluxes, add_gravity
   use flow_layout, only: layout_type
@@ -231,7 +231,7 @@ contains
     subroutine reconstruct(n_cells, direction, i, j, k, low, high)
       integer, intent(in) :: n_cells, direction, i, j, k
       real(wp), intent(inout) :: low(ld, *), high(ld, *)
-      integer :: one(3), v, nr
+      integer :: one(3), v, nr, wide
       one = merge(1, 0, [1, 2, 3] == direction)
       nr = layout%n_reconstructed
       associate (s1 => stride(direction))
@@ -247,6 +247,9 @@ contains
         if (stage%scheme%sharpen .and. layout%n_materials > 1) call sharpen_faces(n_cells, ld, layout, stride, over_h, direction, &
           reach, from(i - back(1), 1, j - back(2), k - back(3)), low, high, s%partial, s%fractions, s%force)
         if (.not. present(open)) return
+        wide = merge(2, 1, stage%scheme%reconstruction == fifth_order)
+        if (all_open(n_cells, 2*wide + 1, merge(1, ld*merge(n(2) + 2*g(2), 1, direction == 3), direction == 1), &
+          open(i - wide*one(1), 1, j - wide*one(2), k - wide*one(3)))) return
         if (stage%scheme%reconstruction == fifth_order) then
           call reconstruct_muscl(third_order, n_cells, ld, nr, s1, eps2, from(i - one(1), 1, j - one(2), k - one(3)), &
             s%narrow_low, &
@@ -287,7 +290,9 @@ contains
             right, from(1, c, jr, kr), s%shock(2, jr, modulo(kr, 2)), s%wave(1, 5), flux)
         end if
       end if
-      if (present(open)) call close_row(n_faces, direction, jl, kl, jr, kr, back, flux)
+      if (.not. present(open)) return
+      if (all_open(n_faces, 1, 1, open(1 - back, 1, jl, kl)) .and. all_open(n_faces, 1, 1, open(1, 1, jr, kr))) return
+      call close_row(n_faces, direction, jl, kl, jr, kr, back, flux)
     end subroutine flux_across
 
     !> Makes walls of the faces of closed cells, and notes the momentum that these receive.

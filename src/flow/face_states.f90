@@ -3,9 +3,26 @@ module face_states
   use kinds, only: wp
   implicit none
   private
-  public :: flatten_next_to_closed, replace_near_closed, take_cell_values
+  public :: all_open, flatten_next_to_closed, replace_near_closed, take_cell_values
 
 contains
+
+  !> True if no cell of some rows is closed (0 in open). n: cells; rows, stride: their number and distance; open: first cell of
+  !> the first.
+  pure logical function all_open(n, rows, stride, open)
+    integer, intent(in) :: n, rows, stride
+    real(wp), intent(in) :: open(*)
+    real(wp) :: least
+    integer :: i, r
+    least = 1
+    do r = 0, rows - 1
+      !$omp simd reduction(min:least)
+      do i = 1, n
+        least = min(least, open(i + r*stride))
+      end do
+    end do
+    all_open = least > 0
+  end function all_open
 
   !> Takes the cell value on both faces where the cell or one of its two neighbours is closed (0 in open).
   pure subroutine flatten_next_to_closed(n, ld, n_var, here, open_below, open_here, open_above, low, high)
