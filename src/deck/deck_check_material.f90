@@ -34,6 +34,7 @@ contains
     call check_failure(material, table, problems)
     if (material%model == 'hjc') call check_hjc(material, table, problems, warnings)
     if (material%eos == 'cochran_chan') call check_cochran_chan(material, table, problems)
+    if (material%eos == 'jwl') call check_afterburn(material, table, problems, warnings)
     if (material%model == 'johnson_cook' .and. material%melt_temperature <= material%reference_temperature) &
       call problems%add_at_key(table, 'melt_temperature', 'must lie above reference_temperature')
     if (material%model == 'linear_hardening' .and. material%ultimate_stress > 0.0_wp .and. &
@@ -156,6 +157,7 @@ contains
     names = [character(key_length) :: 'name', 'library', 'eos', 'model', 'density']
     if (any(material%eos == [character(key_length) :: 'ideal_gas', 'stiffened_gas'])) &
       names = [character(key_length) :: names, 'energy_offset']
+    if (material%eos == 'jwl') names = [character(key_length) :: names, 'afterburn_energy', 'afterburn_start', 'afterburn_end']
     if (material%eos == 'polynomial') names = [character(key_length) :: names, 'polynomial_k2', 'polynomial_k3']
     if (material%model /= '') names = [character(key_length) :: names, 'bulk_viscosity_linear', 'bulk_viscosity_quadratic', &
       'failure', 'failure_strain']
@@ -293,6 +295,20 @@ contains
       end if
     end do
   end function strain_at_lock
+
+  subroutine check_afterburn(material, table, problems, warnings)
+    type(material_group), intent(in) :: material
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems, warnings
+    if (.not. material%afterburn_energy > 0.0_wp) then
+      if (material%afterburn_start > 0.0_wp .or. material%afterburn_end > unset) call warnings%add_at_key(table, &
+        'afterburn_energy', 'is 0: no afterburn between the times that are given')
+    else if (.not. (material%afterburn_end > unset .or. table%is_given('afterburn_end'))) then
+      call problems%add_at_key(table, 'afterburn_energy', 'also needs afterburn_end')
+    else if (.not. material%afterburn_end > material%afterburn_start) then
+      call problems%add_at_key(table, 'afterburn_end', 'must lie after afterburn_start')
+    end if
+  end subroutine check_afterburn
 
   pure real(wp) function solid_pressure(material, m)
     type(material_group), intent(in) :: material

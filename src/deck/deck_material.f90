@@ -3,7 +3,8 @@ module deck_material
   use kinds, only: wp
   use constants, only: unset
   use deck_keys, only: key_table, word_length
-  use units, only: of_density, of_energy_per_mass, of_pressure, of_rate, of_specific_heat, of_temperature, of_velocity
+  use units, only: of_density, of_energy_per_mass, of_pressure, of_rate, of_specific_heat, of_temperature, of_time, &
+    of_velocity
   implicit none
   private
   public :: material_keys
@@ -25,6 +26,8 @@ module deck_material
     ! JWL
     real(wp) :: jwl_a = unset, jwl_b = unset, jwl_r1 = unset, jwl_r2 = unset, jwl_omega = unset
     real(wp) :: energy_per_volume = unset !< E0, per initial volume
+    real(wp) :: afterburn_energy = 0 !< per mass, released at a constant rate from start to end
+    real(wp) :: afterburn_start = 0, afterburn_end = unset
     ! condensed matter that flows
     real(wp) :: grueneisen = unset !< constant
     real(wp) :: cochran_chan_a1 = unset, cochran_chan_a2 = unset, cochran_chan_e1 = unset, cochran_chan_e2 = unset
@@ -72,6 +75,9 @@ contains
     call table%add('jwl_r2', group%jwl_r2, more_than=none)
     call table%add('jwl_omega', group%jwl_omega, more_than=none)
     call table%add('energy_per_volume', group%energy_per_volume, of_pressure, more_than=none, usual=[1e8_wp, 5e10_wp])
+    call table%add('afterburn_energy', group%afterburn_energy, of_energy_per_mass, at_least=none, usual=[0.0_wp, 5e7_wp])
+    call table%add('afterburn_start', group%afterburn_start, of_time, at_least=none)
+    call table%add('afterburn_end', group%afterburn_end, of_time, more_than=none)
     call table%add('grueneisen', group%grueneisen, more_than=none, at_most=10.0_wp)
     call table%add('cochran_chan_a1', group%cochran_chan_a1, of_pressure, more_than=none, usual=[1e7_wp, 1e13_wp])
     call table%add('cochran_chan_a2', group%cochran_chan_a2, of_pressure, at_least=none, usual=[0.0_wp, 1e13_wp])

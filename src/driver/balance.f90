@@ -18,7 +18,8 @@ module balance
     type(solid_totals_type) :: solid
     real(wp) :: mass = 0 !< flow, solid and what left
     real(wp) :: momentum(3) = 0 !< flow and solid less all impulses from outside
-    real(wp) :: energy = 0 !< flow, unburnt explosive, solid and what left, what forcing took and did not give to the solid included
+    !> Flow, unburnt explosive, solid and what left, what forcing took and did not give to the solid included; less afterburn.
+    real(wp) :: energy = 0
     real(wp) :: momentum_scale = 0 !< sum of the sizes of all momenta and impulses
     real(wp) :: exchanged(3) = 0 !< momentum that the solid has from the flow
     real(wp) :: work_on_solid = 0 !< work of the flow on the solid
@@ -46,7 +47,7 @@ contains
         balance%mass = sum(flow%mass) - sum(flow%entered(:n, :))
         balance%momentum = flow%momentum - sum(flow%entered(m:m + 2, :), dim=2)
         balance%unburnt = unburnt_energy(scene%mesh, scene%flow)
-        balance%energy = flow%kinetic + sum(flow%internal) + balance%unburnt - sum(flow%entered(e, :))
+        balance%energy = flow%kinetic + sum(flow%internal) + balance%unburnt - flow%afterburnt - sum(flow%entered(e, :))
         balance%boundary_energy = sum(flow%entered(e, :))
         balance%momentum_scale = sum(abs(flow%momentum)) + sum(abs(flow%entered(m:m + 2, :)))
       end associate

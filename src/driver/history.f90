@@ -40,6 +40,7 @@ contains
       call add_vector('flow.momentum', labels%momentum)
       call add('flow.energy_through_boundary', labels%energy)
       if (scene%flow%burn_total > 0) call add('flow.energy_to_release', labels%energy)
+      if (any(scene%flow%afterburn%energy > 0)) call add('flow.energy_of_afterburn', labels%energy)
     end if
     if (scene%has_solid) then
       do k = 1, scene%solid%n_sets
@@ -94,7 +95,10 @@ contains
     row = [row, scene%clock%time, scene%clock%dt, real(scene%clock%flow_steps, wp), real(scene%clock%solid_steps, wp)]
     if (scene%has_flow) row = [row, balance%flow%mass, balance%flow%internal, balance%flow%kinetic, &
                                pack(balance%flow%momentum, scene%mesh%active), balance%boundary_energy]
-    if (scene%has_flow .and. scene%flow%burn_total > 0) row = [row, balance%unburnt]
+    if (scene%has_flow) then
+      if (scene%flow%burn_total > 0) row = [row, balance%unburnt]
+      if (any(scene%flow%afterburn%energy > 0)) row = [row, balance%flow%afterburnt]
+    end if
     if (scene%has_solid) then
       associate (solid => balance%solid)
         do k = 1, scene%solid%n_sets

@@ -84,6 +84,13 @@ contains
       call json_put(file, 'energy_released', scene%flow%burn_total - balance%unburnt)
       call json_end(file)
     end if
+    if (scene%has_flow) then
+      if (any(scene%flow%afterburn%energy > 0)) then
+        call json_begin(file, 'afterburn')
+        call json_put(file, 'energy_released', balance%flow%afterburnt)
+        call json_end(file)
+      end if
+    end if
     if (scene%coupled) then
       call json_begin(file, 'coupling')
       call json_put(file, 'impulse_on_solid', balance%exchanged)

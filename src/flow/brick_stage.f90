@@ -1,11 +1,12 @@
 !> One Runge-Kutta stage of one brick in a single sweep over its rows of cells (x fastest): reconstruction, Riemann problems in the
 !> active directions, and the update, with no more in memory than a plane of z fluxes.
 module brick_stage
+  use afterburn, only: release_afterburn
   use burn_release, only: release_energy
   use face_states, only: all_open, flatten_next_to_closed, replace_near_closed, take_cell_values
   use fifth_order_upwind, only: reconstruct_fifth_order, keep_below_one
   use flow_differences, only: difference_fluxes, difference_radial_fluxes, add_gravity
-  use flow_layout, only: layout_type
+  use flow_layout, only: layout_type, book_afterburn
   use flow_scheme, only: scheme_type, fifth_order, third_order
   use equation_of_state, only: eos_type
   use interface_sharpening, only: sharpen_faces
@@ -36,6 +37,7 @@ module brick_stage
     real(wp) :: gravity(3) = 0
     real(wp), allocatable :: burn_energy(:) !< of each material, per mass; 0 where it does not burn
     real(wp), allocatable :: burn_rate(:) !< one over the time that a cell takes to burn
+    real(wp), allocatable :: afterburn(:) !< energy per mass of each material that the whole step releases
   end type stage_type
 
   !> What a brick reports of a stage.
@@ -95,7 +97,8 @@ contains
   !> step; n: cells; g: ghost layers; ld: length of a row; eps2: of the limiter, steepest: alpha of the
   !> fifth-order bound, by variable; positive: variables that must be so on
   !> faces. booked(quantity, face): what enters the brick in the whole step through its faces (x low, x high, y low, ...) is added
-  !> there, for faces with at_face. area, volume: of the faces across x and of the cells of a row.
+  !> there, for faces with at_face, and what afterburn releases at book_afterburn. area, volume: of the faces across x and of the
+  !> cells of a row.
   !> Optional, of bricks that have such cells: open: 1 where open, 0 where closed; impulse: the momentum that closed cells receive
   !> is added to the open cell beside them; troubled: 1 where all fluxes are to be of first order; arrival: time at which a
   !> detonation front passes.
@@ -312,7 +315,7 @@ contains
       end do
     end subroutine close_row
 
-    !> What fluxes, gravity and the energy of burning explosive take from the cells of row (j, k).
+    !> What fluxes, gravity, afterburn and the energy of burning explosive take from the cells of row (j, k).
     subroutine take_differences(j, k)
       integer, intent(in) :: j, k
       integer :: m, e, one_row(3)
@@ -325,6 +328,7 @@ contains
           s%flux_y(1, 1, 1 - face_y), s%flux_z(1, 1, j, face_z), s%flux_z(1, 1, j, 1 - face_z), s%d)
       end if
       if (any(abs(stage%gravity) > 0)) call add_gravity(n(1), ld, layout, stage%dt, stage%gravity, from(1, 1, j, k), s%d)
+      if (any(stage%afterburn > 0)) call release_after(j, k)
       if (.not. present(arrival)) return
       one_row = merge([1, ld, ld*(n(2) + 2*g(2))], 0, stage%active) ! arrival has but one
       do m = 1, layout%n_materials
@@ -340,6 +344,24 @@ contains
         if (layout%n_materials > 1) s%d(1:n(1), layout%energy_flux) = s%d(1:n(1), layout%energy_flux) - s%force(1:n(1))
       end do
     end subroutine take_differences
+
+    !> Releases the energy of afterburn in row (j, k) and books it.
+    subroutine release_after(j, k)
+      integer, intent(in) :: j, k
+      integer :: m, e
+      e = layout%energy_flux
+      do m = 1, layout%n_materials
+        if (.not. stage%afterburn(m) > 0) cycle
+        if (layout%n_materials > 1) then
+          call release_afterburn(n(1), stage%afterburn(m), from(1, m, j, k), s%d(1, e), s%force, &
+            s%d(1, layout%first_material_energy_flux + m - 1))
+        else
+          call release_afterburn(n(1), stage%afterburn(m), from(1, m, j, k), s%d(1, e), s%force)
+        end if
+        if (present(open)) s%force(1:n(1)) = merge(s%force(1:n(1)), 0.0_wp, open(1:n(1), 1, j, k) > 0)
+        booked(e, book_afterburn) = booked(e, book_afterburn) + stage%weight*sum(s%force(1:n(1))*volume)
+      end do
+    end subroutine release_after
 
     subroutine update(j, k)
       integer, intent(in) :: j, k

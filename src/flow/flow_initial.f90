@@ -1,5 +1,6 @@
 !> The flow at the start of a scene, from its deck: materials, boundary conditions, regions and charges.
 module flow_initial
+  use afterburn, only: afterburn_type
   use burn, only: set_up_burn, unburnt_energy
   use burn_charges, only: charges_of_deck, is_programmed
   use constants, only: pi
@@ -55,6 +56,7 @@ contains
     associate (charge => filling(size(deck%region) + 1:))
       call set_up_burn(mesh, flow, charges_of_deck(mesh, deck, charge%shape, charge%material, eos), deck%flow%burn_width)
     end associate
+    call set_afterburn(deck, used, flow)
     call reference_states(flow, filling, density, pressure)
     do i = 1, size(used)
       call test_eos(flow, filling, i, density(i), pressure(i))
@@ -66,6 +68,24 @@ contains
     if (any(flow%face == face_inflow)) call prepare_inflow(deck, flow, used, density, pressure)
     call set_noise(mesh, flow)
   end subroutine setup_flow
+
+  !> Afterburn of the materials. Fatal (bad input) where it would begin before all programmed charges have burnt: what has not burnt
+  !> would get it too.
+  subroutine set_afterburn(deck, used, flow)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: used(:)
+    type(flow_type), intent(inout) :: flow
+    integer :: i
+    do i = 1, size(used)
+      associate (group => deck%material(used(i)))
+        if (.not. group%afterburn_energy > 0) cycle
+        flow%afterburn(i) = afterburn_type(group%afterburn_energy, group%afterburn_start, group%afterburn_end)
+        if (flow%burn_energy(i) > 0 .and. group%afterburn_start < flow%burn_end) call fatal('material on line '// &
+          str(group%line)//': afterburn_start lies before '//str(flow%burn_end, 4)// &
+          ', when all programmed charges have burnt', exit_bad_input)
+      end associate
+    end do
+  end subroutine set_afterburn
 
   !> The scheme that the deck asks for.
   pure function flow_scheme_of(deck) result(scheme)

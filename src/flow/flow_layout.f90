@@ -11,6 +11,8 @@ module flow_layout
   private
   public :: new_layout, max_materials
 
+  integer, parameter, public :: book_afterburn = 7 !< of what is booked: after the six faces, what afterburn releases
+
   type, public :: layout_type
     integer :: n_materials = 1
     integer :: n_rows = 6 !< rows of the state

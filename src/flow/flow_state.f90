@@ -1,9 +1,10 @@
 !> The flow of this rank: state of its bricks in three rotating buffers, materials, boundary conditions, books and repairs.
 module flow_state
+  use afterburn, only: afterburn_type
   use blocks, only: block, allocate_cells
   use brick_stage, only: stage_scratch
   use equation_of_state, only: eos_type
-  use flow_layout, only: layout_type, new_layout
+  use flow_layout, only: layout_type, new_layout, book_afterburn
   use flow_scheme, only: scheme_type
   use kinds, only: wp, i8
   use mesh, only: mesh_type
@@ -55,7 +56,8 @@ module flow_state
     real(wp) :: burn_speed = 0 !< fastest front, 0 when all has burnt
     real(wp) :: burn_end = 0 !< time at which all has burnt
     real(wp) :: burn_total = 0 !< energy that burning releases from the start to the end
-    real(wp), allocatable :: books(:, :, :) !< what entered: conserved quantity, face (x low, x high, ...), local brick
+    type(afterburn_type), allocatable :: afterburn(:) !< of each material
+    real(wp), allocatable :: books(:, :, :) !< what entered: conserved quantity, face (x low, x high, ...) or afterburn, local brick
     type(repair_log) :: repairs
     type(stage_scratch) :: scratch
   contains
@@ -93,7 +95,8 @@ contains
       if (flow%layout%energy_row(b) > 0) flow%positive(flow%layout%energy_row(b)) = .false.
     end do
     allocate (flow%burn_energy(size(eos)), flow%burn_rate(size(eos)), source=0.0_wp)
-    allocate (flow%books(flow%layout%n_conserved, 6, mesh%n_local), source=0.0_wp)
+    allocate (flow%afterburn(size(eos)))
+    allocate (flow%books(flow%layout%n_conserved, book_afterburn, mesh%n_local), source=0.0_wp)
     do buffer = 1, 3
       do b = 1, mesh%n_local
         call allocate_cells(flow%w(b, buffer), mesh%brick_cells, mesh%ghost, flow%layout%n_rows, 1.0_wp)

@@ -1,6 +1,7 @@
 !> One time step of the flow: three stages of the strong-stability-preserving Runge-Kutta scheme of Shu and Osher.
 !> The coupling may change velocities in the buffer that a stage wrote: the next stage starts from what it finds there.
 module flow_step
+  use afterburn, only: released_in_step
   use blocks, only: block
   use brick_stage, only: advance_brick, prepare_scratch, stage_type, brick_report
   use flow_boundary, only: fill_boundary
@@ -115,6 +116,7 @@ contains
     plan%gravity = flow%gravity
     plan%burn_energy = flow%burn_energy
     plan%burn_rate = flow%burn_rate
+    plan%afterburn = released_in_step(flow%afterburn, flow%time, dt)
   end function stage_plan
 
   subroutine keep_books(flow, books)

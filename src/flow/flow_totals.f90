@@ -1,5 +1,7 @@
-!> Sums over the flow: masses, momentum and energies of the open cells, and what entered through the faces of the domain.
+!> Sums over the flow: masses, momentum and energies of the open cells, what entered through the faces of the domain, and
+!> what afterburn released.
 module flow_totals
+  use flow_layout, only: book_afterburn
   use flow_state, only: flow_type
   use geometry, only: cell_volumes
   use kinds, only: wp
@@ -15,6 +17,7 @@ module flow_totals
     real(wp), allocatable :: internal(:) !< by material
     real(wp) :: kinetic = 0
     real(wp), allocatable :: entered(:, :) !< conserved quantity, face (x low, x high, y low, ...) since the start
+    real(wp) :: afterburnt = 0 !< energy that afterburn has released since the start
   end type flow_totals_type
 
 contains
@@ -25,10 +28,12 @@ contains
     type(flow_type), intent(in) :: flow
     type(flow_totals_type) :: totals
     real(wp), allocatable :: partial(:, :), total(:), row(:, :)
-    integer :: n, b, ld, sums, q
+    real(wp), allocatable :: books(:, :)
+    integer :: n, b, ld, sums, booked, q
     n = flow%n_materials
     sums = 2*n + 4
-    allocate (partial(sums + 6*flow%layout%n_conserved, mesh%n_local), total(sums + 6*flow%layout%n_conserved))
+    booked = book_afterburn*flow%layout%n_conserved
+    allocate (partial(sums + booked, mesh%n_local), total(sums + booked))
     do b = 1, mesh%n_local
       ld = size(flow%w(b, 1)%a, 1)
       allocate (row(ld, sums))
@@ -40,7 +45,7 @@ contains
           partial(q, b) = mesh%cell_volume*sum(row(1:mesh%brick_cells(1), q))
         end if
       end do
-      partial(sums + 1:, b) = reshape(flow%books(:, :, b), [6*flow%layout%n_conserved])
+      partial(sums + 1:, b) = reshape(flow%books(:, :, b), [booked])
       deallocate (row)
     end do
     call reduce_sum(mesh, partial, total)
@@ -48,7 +53,9 @@ contains
     totals%internal = total(n + 1:2*n)
     totals%momentum = total(2*n + 1:2*n + 3)
     totals%kinetic = total(2*n + 4)
-    totals%entered = reshape(total(sums + 1:), [flow%layout%n_conserved, 6])
+    books = reshape(total(sums + 1:), [flow%layout%n_conserved, book_afterburn])
+    totals%entered = books(:, :6)
+    totals%afterburnt = books(flow%layout%energy_flux, book_afterburn)
     if (mesh%radial_power > 0) then
       totals%momentum(1) = 0
       totals%entered(flow%layout%momentum_flux, :) = 0

@@ -16,7 +16,7 @@ module restart_files
   public :: restart_file, create_restart, open_restart, close_restart, newest_restart, forget_restarts
   public :: restart_has
 
-  integer, parameter :: format_version = 2
+  integer, parameter :: format_version = 3
 
   !> A restart file being written or read.
   type :: restart_file
