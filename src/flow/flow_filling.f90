@@ -104,7 +104,7 @@ contains
     end do
     total = total - 0.5_wp*sum(momentum**2)/sum(m) ! what the velocities lose by becoming one heats the cell
     p = lowest
-    if (highest > lowest .or. total > 1e-12_wp*sum(e)) then
+    if (highest > lowest .or. total > 1e-12_wp*sum(abs(e))) then
       where (m > 0) e = e + total*m/sum(m)
       call relax_present()
     end if
