@@ -36,7 +36,7 @@ contains
       call restart_put_table(file, prefix//'body', blocks(set, :)%n, joined_integers(2))
       call restart_put_table(file, prefix//'cell_start', merge(n_starts(blocks(set, :)), 0, blocks(set, :)%n > 0), joined_starts())
       do column = 1, n_field
-        call restart_put_table(file, prefix//trim(field_name(column)), blocks(set, :)%n, joined_reals())
+        call restart_put_table(file, prefix//column_name(column), blocks(set, :)%n, joined_reals())
       end do
     end do
 
@@ -83,6 +83,17 @@ contains
 
   end subroutine restart_put_particles
 
+  !> Columns that only some materials have go by their number.
+  pure function column_name(column) result(name)
+    integer, intent(in) :: column
+    character(:), allocatable :: name
+    if (column <= size(field_name)) then
+      name = trim(field_name(column))
+    else
+      name = 'column_'//str(column)
+    end if
+  end function column_name
+
   elemental integer function n_starts(block)
     type(particle_block), intent(in) :: block
     n_starts = size(block%cell_start)
@@ -123,7 +134,7 @@ contains
         if (start_counts(b) > 0) blocks(set, b)%cell_start(:) = integers(sum(start_counts(:b - 1)) + 1:sum(start_counts(:b)))
       end do
       do column = 1, n_field
-        call restart_get_table(file, prefix//trim(field_name(column)), counts, reals)
+        call restart_get_table(file, prefix//column_name(column), counts, reals)
         do b = 1, size(blocks, 2)
           blocks(set, b)%f(:counts(b), column) = reals(sum(counts(:b - 1)) + 1:sum(counts(:b)))
         end do

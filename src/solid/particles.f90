@@ -17,14 +17,12 @@ module particles
   integer, parameter, public :: at_plastic_strain = 17 !< equivalent plastic strain
   integer, parameter, public :: at_damage = 18 !< damage, 0 sound to 1
   integer, parameter, public :: at_plastic_work = 19 !< plastic work of the particle (an energy)
-  integer, parameter, public :: at_compaction = 20 !< largest compression r/r0 - 1 reached so far (models that compact)
-  integer, parameter, public :: n_fields_basic = 19 !< columns of a model without compaction
-  integer, parameter, public :: n_fields_compacting = 20 !< columns of a model with compaction
+  integer, parameter, public :: n_fields_basic = 19 !< columns that every particle has; what a material needs besides follows them
   !> Names of the columns, for output and restart.
-  character(16), parameter, public :: field_name(n_fields_compacting) = [character(16) :: &
+  character(16), parameter, public :: field_name(n_fields_basic) = [character(16) :: &
     'position_x', 'position_y', 'position_z', 'velocity_x', 'velocity_y', 'velocity_z', 'mass', 'volume', &
     'stress_xx', 'stress_yy', 'stress_zz', 'stress_yz', 'stress_xz', 'stress_xy', 'internal_energy', 'viscosity', &
-    'plastic_strain', 'damage', 'plastic_work', 'compaction']
+    'plastic_strain', 'damage', 'plastic_work']
 
   !> Particles of one set (material) in one brick.
   type, public :: particle_block

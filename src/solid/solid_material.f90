@@ -6,11 +6,11 @@ module solid_material
   use errors, only: fatal, exit_bad_input
   use kinds, only: wp
   use material_eos, only: eos_of
-  use particles, only: n_fields_basic, n_fields_compacting
+  use particles, only: n_fields_basic
   use text, only: str
   implicit none
   private
-  public :: make_solid_material, lock_compression
+  public :: make_solid_material, lock_compression, claim_columns
 
   integer, parameter, public :: model_elastic = 1
   integer, parameter, public :: model_perfect_plasticity = 2
@@ -37,6 +37,7 @@ module solid_material
     character(64) :: name = ''
     integer :: model = 0 !< model_*
     integer :: n_field = n_fields_basic !< columns that its particles have
+    integer :: at_compaction = 0 !< column of the largest compression r/r0 - 1 reached so far; 0: none
     real(wp) :: density = 0 !< at rest
     real(wp) :: shear_modulus = 0, bulk_modulus = 0
     real(wp) :: yield_stress = 0, hardening_modulus = 0
@@ -98,6 +99,15 @@ contains
     m%sound_speed = sqrt((m%bulk_modulus + 4*third*m%shear_modulus)/m%density)
   end function make_solid_material
 
+  !> Gives the material's particles `width` more columns; first: where they start.
+  pure subroutine claim_columns(m, width, first)
+    type(solid_material_type), intent(inout) :: m
+    integer, intent(in) :: width
+    integer, intent(out) :: first
+    first = m%n_field + 1
+    m%n_field = m%n_field + width
+  end subroutine claim_columns
+
   subroutine make_metal(group, m)
     type(material_group), intent(in) :: group
     type(solid_material_type), intent(inout) :: m
@@ -126,7 +136,7 @@ contains
   subroutine make_hjc(group, m)
     type(material_group), intent(in) :: group
     type(solid_material_type), intent(inout) :: m
-    m%n_field = n_fields_compacting
+    call claim_columns(m, 1, m%at_compaction)
     associate (h => m%hjc)
       h%a = group%hjc_a
       h%b = group%hjc_b

@@ -11,7 +11,7 @@ module stress_update
   use linear_hardening, only: linear_yield
   use particle_fluid, only: fluid_pressure, fluid_sound_speed
   use particles, only: at_velocity, at_mass, at_volume, at_stress, at_energy, at_viscosity, at_plastic_strain, at_damage, &
-    at_plastic_work, at_compaction
+    at_plastic_work
   use perfect_plasticity, only: perfect_yield
   use radial_return, only: return_to_yield
   use simplified_johnson_cook, only: simplified_johnson_cook_yield
@@ -54,7 +54,7 @@ contains
       call elastic_pressure(n, m%bulk_modulus, m%failure_damage, f(first, at_damage), compression, pressure)
       ratio(:n) = 1
     case (model_hjc)
-      call hjc_pressure(n, m%hjc, compression, f(first, at_damage), f(first, at_compaction), pressure, yield)
+      call hjc_pressure(n, m%hjc, compression, f(first, at_damage), f(first, m%at_compaction), pressure, yield)
       call hjc_return(n, m%hjc, m%shear_modulus, m%failure_damage, dt_rate, trial, strain, middle, yield, &
         f(first, at_plastic_strain), f(first, at_damage), f(first, at_plastic_work), pressure, ratio)
     case default
@@ -217,7 +217,7 @@ contains
       do i = 1, n
         compression(i) = f(first + i - 1, at_mass)/(m%density*f(first + i - 1, at_volume)) - 1
       end do
-      call hjc_modulus(n, m%hjc, compression, f(first, at_compaction), modulus)
+      call hjc_modulus(n, m%hjc, compression, f(first, m%at_compaction), modulus)
     case default
       modulus(:n) = m%bulk_modulus
     end select

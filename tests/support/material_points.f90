@@ -3,7 +3,7 @@ module material_points
   use cell_functions, only: chunk
   use deck_types, only: material_group
   use kinds, only: wp
-  use particles, only: at_mass, at_volume, at_stress, n_fields_compacting
+  use particles, only: at_mass, at_volume, at_stress
   use solid_material, only: solid_material_type, make_solid_material
   use stress_update, only: update_stress
   implicit none
@@ -13,7 +13,7 @@ module material_points
   !> A particle of unit volume.
   type, public :: point_type
     type(solid_material_type) :: material
-    real(wp) :: f(1, n_fields_compacting) = 0
+    real(wp), allocatable :: f(:, :) !< (1, column)
   end type point_type
 
 contains
@@ -27,6 +27,7 @@ contains
     viscous = .false.
     if (present(viscosity)) viscous = viscosity
     point%material = make_solid_material(group, viscous)
+    allocate (point%f(1, point%material%n_field), source=0.0_wp)
     point%f(1, at_volume) = 1
     point%f(1, at_mass) = point%material%density
   end function new_point
@@ -41,7 +42,7 @@ contains
     gradient = 0
     gradient(1, :) = dt*reshape(transpose(rate), [9])
     do step = 1, n
-      call update_stress(point%material, dt, 1.0_wp, 1, 1, n_fields_compacting, point%f, 1, gradient)
+      call update_stress(point%material, dt, 1.0_wp, 1, 1, size(point%f, 2), point%f, 1, gradient)
     end do
   end subroutine drive
 
