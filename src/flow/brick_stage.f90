@@ -13,7 +13,6 @@ module brick_stage
   use kinds, only: wp
   use muscl, only: reconstruct_muscl
   use riemann, only: hllc_single, hllc_materials, close_faces
-  use riemann_two_materials, only: hllc_two_materials
   use shock_sensor, only: sense_shocks, dissipate_shear
   use update_materials, only: update_row, row_scratch, row_report
   use update_single, only: update_gas, update_stored_energy
@@ -282,9 +281,6 @@ contains
       if (layout%n_materials == 1) then
         call hllc_single(n_faces, ld, layout, eos(1), normal, left, from(1 - back, c, jl, kl), right, from(1, c, jr, kr), flux, &
           s%wave)
-      else if (layout%n_materials == 2) then
-        call hllc_two_materials(n_faces, ld, layout, eos, normal, left, from(1 - back, c, jl, kl), right, from(1, c, jr, kr), &
-          flux, s%wave)
       else
         call hllc_materials(n_faces, ld, layout%n_materials, layout, eos, normal, left, from(1 - back, c, jl, kl), &
           right, from(1, c, jr, kr), flux, s%wave, s%partial, s%fractions)
