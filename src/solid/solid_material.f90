@@ -38,6 +38,8 @@ module solid_material
     integer :: model = 0 !< model_*
     integer :: n_field = n_fields_basic !< columns that its particles have
     integer :: at_compaction = 0 !< column of the largest compression r/r0 - 1 reached so far; 0: none
+    integer :: at_strength = 0 !< column of the factor on the strength; 0: none
+    integer :: at_stiffness = 0 !< column of the factor on the elastic moduli; 0: none
     real(wp) :: density = 0 !< at rest
     real(wp) :: shear_modulus = 0, bulk_modulus = 0
     real(wp) :: yield_stress = 0, hardening_modulus = 0
