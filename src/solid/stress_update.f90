@@ -17,6 +17,7 @@ module stress_update
   use simplified_johnson_cook, only: simplified_johnson_cook_yield
   use solid_material, only: solid_material_type, model_elastic, model_perfect_plasticity, model_linear_hardening, &
     model_johnson_cook, model_simplified_johnson_cook, model_hjc, model_fluid
+  use strength_factors, only: factors_of, to_reference, from_reference, stiffen
   use cell_functions, only: chunk
   implicit none
   private
@@ -34,6 +35,7 @@ contains
     real(wp), dimension(chunk) :: trial, power, shear, strain, old_pressure, volume, middle, compression
     real(wp), dimension(chunk) :: pressure, ratio, yield, viscosity, speed
     real(wp) :: deviator(chunk, 6), dt_rate
+    real(wp), dimension(chunk) :: strength, stiffness, work
     if (m%model == model_fluid) then
       call fluid_sound_speed(n, m%eos, f(first, at_mass), f(first, at_volume), f(first, at_energy), speed)
     else
@@ -45,6 +47,11 @@ contains
     call bulk_viscosity(n, dt, length, m%linear_viscosity, m%quadratic_viscosity, speed, f(first, at_mass), &
       f(first, at_volume), volume, viscosity)
     dt_rate = dt*m%reference_strain_rate
+    if (m%at_strength > 0) then
+      call factors_of(n, capacity, f, first, m%at_strength, m%at_stiffness, strength, stiffness)
+      call to_reference(n, strength, stiffness, m%shear_modulus, gradient, deviator, trial, power, shear, strain, old_pressure, &
+        compression, viscosity, f(first, at_energy), f(first, at_plastic_strain), f(first, at_plastic_work), work)
+    end if
     select case (m%model)
     case (model_fluid)
       call fluid_pressure(n, m%eos, f(first, at_mass), f(first, at_volume), volume, f(first, at_energy), old_pressure, viscosity, &
@@ -74,6 +81,8 @@ contains
         trial, middle, f(first, at_plastic_strain), f(first, at_damage), f(first, at_plastic_work), ratio)
       call elastic_pressure(n, m%bulk_modulus, m%failure_damage, f(first, at_damage), compression, pressure)
     end select
+    if (m%at_strength > 0) call from_reference(n, strength, stiffness, work, deviator, power, shear, old_pressure, viscosity, &
+      pressure, f(first, at_energy), f(first, at_plastic_strain), f(first, at_plastic_work))
     call set_stress(n, m%shear_modulus, deviator, ratio, pressure, power, shear, old_pressure, viscosity, volume, middle, &
       f(first, at_volume), f(first, at_energy), f(first, at_viscosity), f(first, at_stress), f(first, at_stress + 1), &
       f(first, at_stress + 2), f(first, at_stress + 3), f(first, at_stress + 4), f(first, at_stress + 5))
@@ -203,8 +212,9 @@ contains
     integer, intent(in) :: n, capacity, n_field, first
     real(wp), intent(in) :: f(capacity, n_field)
     real(wp), intent(out) :: signal(chunk)
-    real(wp), dimension(chunk) :: modulus, compression
+    real(wp), dimension(chunk) :: modulus, compression, strength, stiffness
     integer :: i
+    if (m%at_strength > 0) call factors_of(n, capacity, f, first, m%at_strength, m%at_stiffness, strength, stiffness)
     select case (m%model)
     case (model_fluid)
       call fluid_sound_speed(n, m%eos, f(first, at_mass), f(first, at_volume), f(first, at_energy), signal)
@@ -217,10 +227,13 @@ contains
       do i = 1, n
         compression(i) = f(first + i - 1, at_mass)/(m%density*f(first + i - 1, at_volume)) - 1
       end do
+      if (m%at_strength > 0) compression(:n) = compression(:n)*stiffness(:n)/strength(:n)
       call hjc_modulus(n, m%hjc, compression, f(first, m%at_compaction), modulus)
     case default
       modulus(:n) = m%bulk_modulus
     end select
+    if (m%at_strength > 0) call stiffen(n, stiffness, m%density, m%shear_modulus, m%failure_damage, f(first, at_mass), &
+      f(first, at_volume), f(first, at_damage), modulus)
     call add_speeds(n, m%density, m%shear_modulus, m%failure_damage, modulus, f(first, at_mass), f(first, at_volume), &
       f(first, at_viscosity), f(first, at_damage), f(first, at_velocity), f(first, at_velocity + 1), f(first, &
         at_velocity + 2), signal)
