@@ -131,6 +131,10 @@ contains
     if (material == 0) return
     if (deck%material(material)%model == 'fluid') call problems%add_at_key(table, '', 'material '''// &
       trim(deck%material(material)%name)//''' is a fluid: it has no strength')
+    if (deck%material(material)%model == 'neo_hookean') call problems%add_at_key(table, '', 'material '''// &
+      trim(deck%material(material)%name)//''' (neo_hookean) has no strength that could vary')
+    if (deck%material(material)%model /= 'fluid' .and. deck%material(material)%eos /= '') call problems%add_at_key(table, '', &
+      'material '''//trim(deck%material(material)%name)//''' takes its pressure from an eos, which does not vary')
     do i = 1, size(deck%body)
       if (body > 0 .and. find_body(deck, deck%body(i)%name) /= body) cycle
       if (find_material(deck, deck%body(i)%material) /= material) cycle

@@ -10,7 +10,9 @@ module strength_factors
   use kinds, only: wp
   implicit none
   private
-  public :: factors_of, to_reference, from_reference, stiffen
+  public :: factors_of, to_reference, from_reference, reference_compression
+
+  real(wp), parameter :: thinnest = 0.999_wp !< no density below a thousandth of that at rest is asked for
 
 contains
 
@@ -68,7 +70,7 @@ contains
         + 2*(t(i, 4)*t(i, 4) + t(i, 5)*t(i, 5) + t(i, 6)*t(i, 6))))
       shear(i) = shear(i)*similar
       strain(i) = strain(i)*similar
-      compression(i) = compression(i)*similar
+      compression(i) = max(compression(i)*similar, -thinnest)
       old_pressure(i) = old_pressure(i)*per
       viscosity(i) = viscosity(i)*per
       energy(i) = energy(i)*per
@@ -106,18 +108,16 @@ contains
     end do
   end subroutine from_reference
 
-  !> Brings dp/dmu of the material at the reference compression to that of stiffer particles, with what the shear modulus adds to it.
-  pure subroutine stiffen(n, b, density, shear_modulus, failure_damage, mass, volume, damage, modulus)
+  !> The compression that the model has seen.
+  pure subroutine reference_compression(n, a, b, compression)
     integer, intent(in) :: n
-    real(wp), intent(in) :: b(chunk), density, shear_modulus, failure_damage, mass(n), volume(n), damage(n)
-    real(wp), intent(inout) :: modulus(n)
-    real(wp) :: more
+    real(wp), intent(in) :: a(chunk), b(chunk)
+    real(wp), intent(inout) :: compression(n)
     integer :: i
-    !$omp simd private(more)
+    !$omp simd
     do i = 1, n
-      more = 4*third*shear_modulus*(b(i) - 1)*density*volume(i)/mass(i)
-      modulus(i) = b(i)*modulus(i) + merge(more, 0.0_wp, damage(i) < failure_damage)
+      compression(i) = max(compression(i)*b(i)/a(i), -thinnest)
     end do
-  end subroutine stiffen
+  end subroutine reference_compression
 
 end module strength_factors
