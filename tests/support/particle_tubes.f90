@@ -16,6 +16,7 @@ module particle_tubes
   type, public :: tube_result
     real(wp) :: density = 0, velocity = 0, pressure = 0 !< errors
     real(wp) :: star_pressure = 0, star_velocity = 0 !< mean between contact and the shock to the right, middle half of the way
+    real(wp) :: exact_pressure = 0, exact_velocity = 0 !< there
     real(wp) :: noise = 0 !< standard deviation of the velocity there, over the exact one
     real(wp) :: energy_drift = 0 !< change of kinetic and internal energy over the first
     integer :: steps = 0
@@ -137,6 +138,8 @@ contains
     end do
     tube%star_pressure = tube%star_pressure/n
     tube%star_velocity = tube%star_velocity/n
+    tube%exact_pressure = exact%pressure
+    tube%exact_velocity = exact%velocity(2)
     tube%noise = sqrt(squares/n)/exact%velocity(2)
   end subroutine measure
 
