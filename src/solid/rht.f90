@@ -179,18 +179,21 @@ contains
     real(wp), intent(inout) :: closed(n)
     real(wp), intent(out) :: pressure(n), crush(n)
     real(wp), parameter :: smallest = 1e-12_wp
-    real(wp) :: thermal(chunk), change(chunk), x(chunk), excess(chunk), rest, range, power, alpha, eta, solid, slope, coupling, of_x
+    real(wp), dimension(chunk) :: thermal, change, x, most, excess
+    real(wp) :: rest, range, power, alpha, eta, solid, slope, coupling, of_x, tolerance
     integer :: i, iteration
     rest = c%alpha
     range = c%p_comp - c%p_crush
+    tolerance = 1e-9_wp*c%p_crush
     power = c%n_comp
     !$omp simd
     do i = 1, n
       change(i) = 0.5_wp*(old_volume(i) - volume(i))/volume(i)
       thermal(i) = energy(i)/volume(i) + change(i)*(old_pressure(i) + 2*viscosity(i))
-      x(i) = exp(log(max(1 - closed(i)/max(rest - 1, smallest), smallest))/power)
+      x(i) = exp(log(max(1 - closed(i)/(rest - 1), smallest))/power)
+      most(i) = x(i)
     end do
-    do iteration = 0, 6
+    do iteration = 0, 8
       !$omp simd private(alpha, eta, solid, slope, coupling)
       do i = 1, n
         alpha = 1 + (rest - 1)*exp(power*log(x(i)))
@@ -200,9 +203,9 @@ contains
         pressure(i) = (solid + coupling*thermal(i))/(1 - coupling*change(i))
         crush(i) = c%p_comp - range*x(i)
         excess(i) = pressure(i) - crush(i)
-        closed(i) = max(closed(i), rest - alpha)
       end do
-      if (.not. any(excess(:n) > 1e-9_wp*range) .or. iteration == 6) exit
+      if (iteration == 8) exit
+      if (.not. any(excess(:n) > tolerance .or. (excess(:n) < -tolerance .and. x(:n) < most(:n)))) exit
       !$omp simd private(alpha, eta, solid, slope, of_x)
       do i = 1, n
         alpha = 1 + (rest - 1)*exp(power*log(x(i)))
@@ -210,8 +213,12 @@ contains
         solid = eta*(c%a1 + eta*(c%a2 + eta*c%a3))/alpha
         slope = (c%a1 + eta*(2*c%a2 + eta*3*c%a3))*(1 + compression(i))/rest/alpha - solid/alpha
         of_x = slope*(alpha - 1)*power/x(i) + range
-        x(i) = merge(max(x(i) - excess(i)/of_x, smallest), x(i), excess(i) > 0)
+        x(i) = max(min(x(i) - excess(i)/of_x, most(i)), smallest)
       end do
+    end do
+    !$omp simd
+    do i = 1, n
+      closed(i) = max(closed(i), (rest - 1)*(1 - exp(power*log(x(i)))))
     end do
   end subroutine close_pores
 

@@ -6,7 +6,7 @@
 module stress_update
   use cell_functions, only: chunk
   use constants, only: third
-  use drucker_prager, only: drucker_prager_stress
+  use drucker_prager, only: drucker_prager_stress, sliding_modulus
   use elastic, only: elastic_pressure, elastic_ratio, limit_tension
   use hjc, only: hjc_stress, hjc_modulus
   use johnson_cook, only: johnson_cook_yield
@@ -166,26 +166,27 @@ contains
     integer, intent(in) :: n, capacity, n_field, first
     real(wp), intent(in) :: f(capacity, n_field)
     real(wp), intent(out) :: signal(chunk)
-    real(wp), dimension(chunk) :: modulus, compression, strength, factor
-    real(wp) :: failure_damage
+    real(wp), dimension(chunk) :: modulus, compression, strength, factor, energy
+    real(wp) :: failure_damage, shear
     integer :: i
     do i = 1, n
       compression(i) = f(first + i - 1, at_mass)/(m%density*f(first + i - 1, at_volume)) - 1
     end do
     call factors_of(n, capacity, f, first, m%at_strength, m%at_stiffness, strength, factor)
     if (m%at_strength > 0) call reference_compression(n, strength, factor, compression)
+    energy(:n) = f(first:first + n - 1, at_energy)/strength(:n)
     select case (m%model)
     case (model_hjc)
       call hjc_modulus(n, m%hjc, compression, f(first, m%at_own), modulus)
     case (model_rht)
-      call rht_modulus(n, m%rht, compression, f(first, at_energy), f(first, at_volume), f(first, m%at_own), modulus)
+      call rht_modulus(n, m%rht, compression, energy, f(first, at_volume), f(first, m%at_own), modulus)
     case (model_neo_hookean)
       call neo_hookean_modulus(n, m%bulk_modulus, m%shear_modulus, m%density, f(first, at_mass), f(first, at_volume), &
         f(first, m%at_own), f(first, m%at_own + 1), f(first, m%at_own + 2), modulus)
     case default
       modulus(:n) = m%bulk_modulus
       if (m%pressure == pressure_eos) then
-        call fluid_sound_speed(n, m%eos, f(first, at_mass), f(first, at_volume), f(first, at_energy), signal)
+        call fluid_sound_speed(n, m%eos, f(first, at_mass), f(first, at_volume), energy, signal)
         !$omp simd
         do i = 1, n
           modulus(i) = signal(i)*signal(i)*m%density
@@ -194,7 +195,9 @@ contains
     end select
     failure_damage = m%failure_damage
     if (m%keeps_friction) failure_damage = huge(1.0_wp)
-    call add_speeds(n, m%density, m%shear_modulus, failure_damage, factor, modulus, f(first, at_mass), f(first, at_volume), &
+    shear = m%shear_modulus
+    if (m%model == model_drucker_prager) shear = sliding_modulus(m%drucker_prager, m%bulk_modulus, m%shear_modulus)
+    call add_speeds(n, m%density, shear, failure_damage, factor, modulus, f(first, at_mass), f(first, at_volume), &
       f(first, at_viscosity), f(first, at_damage), f(first, at_velocity), f(first, at_velocity + 1), f(first, &
         at_velocity + 2), signal)
   end subroutine signal_speeds
