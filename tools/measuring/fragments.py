@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from snapshot_files import open_snapshot
-from style import LINES, NullFormatter, plt, readable, save
+from style import LINES, LogLocator, NullFormatter, plt, readable, save
 
 LOOSE = "#dedbd4"  # particles of no fragment
 STEP = re.compile(r"fragments_(\d+)\.csv")
@@ -110,8 +110,10 @@ def measure_all(folders):
             distribution(panel, columns[name], folder.name.replace("_", " "), LINES[i % len(LINES)])
         panel.set_xlabel(f"{title} [{units[name]}]")
         panel.set_ylabel("fragments of at least that")
-        if np.ptp(np.log10(panel.get_xlim())) > 0.7:
-            panel.xaxis.set_minor_formatter(NullFormatter())
+        if np.ptp(np.log10(panel.get_xlim())) < 2:
+            panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            panel.xaxis.set_major_formatter("{x:g}")
+        panel.xaxis.set_minor_formatter(NullFormatter())
         panel.grid(True, which="both", alpha=0.15)
     panels[0].legend()
     picture = folders[0] / "pictures" / "fragments.png"
