@@ -73,8 +73,8 @@ def draw_map(panel, path, title):
     colours[number == 0] = matplotlib_colour(LOOSE)
     factor, unit = readable(x, snapshot.length_unit)
     order = np.argsort(x[:, across], kind="stable")
-    panel.scatter(factor * x[order, a], factor * x[order, b], c=colours[order], s=max(0.3, min(6.0, 9e4 / len(x))), lw=0,
-                  rasterized=True)
+    panel.scatter(factor * x[order, a], factor * x[order, b], c=colours[order], s=(260 * snapshot.size() / np.ptp(x, axis=0).max()) ** 2,
+                  marker="s", lw=0, rasterized=True)
     panel.set_aspect("equal")
     panel.set_xlabel(f"{'xyz'[a]} [{unit}]")
     panel.set_ylabel(f"{'xyz'[b]} [{unit}]")
