@@ -7,7 +7,7 @@
 !>       = F fs/Q1 - 3 p* (1/Q2 - fs/(Q1 ft))         0 > 3 p* > 3 p_t
 !> times R3 of Willam & Warnke between the meridians, ratio Q = Q0 + B p*; F the rate factor, Q1 = R3(30 degrees, Q0), Q2 = Q0. The
 !> elastic surface is g s_f(p*/g), with g rising from Fe Fc (elastic limits gc, gt; cap of the pores) to 1 while the
-!> plastic strain rises to e_h; then damage leads it to the residual surface Af p*^nf.
+!> plastic strain rises to e_h = s_f (1 - Fe Fc)/(3 xi G); then damage leads it to the residual surface Af p*^nf.
 !> Rate factor F = (rate/static)^b, static 3e-5/s in compression and 3e-6/s in tension, between them along the pressure.
 !>
 !> Here the rate is that of the whole deviatoric strain. Damage under tension may follow from the dissipated work (crack_band);
@@ -232,7 +232,7 @@ contains
     real(wp), intent(inout), dimension(n) :: plastic_strain, damage, plastic_work
     real(wp), intent(out) :: ratio(n)
     real(wp), parameter :: smallest = 1e-12_wp
-    real(wp), dimension(chunk) :: elastic, surface, scaled, section, residual, full
+    real(wp), dimension(chunk) :: elastic, surface, scaled, section, residual, full, one
     real(wp) :: fc, per_fc, ft, q0, qb, gc, gt, af, nf, d1, d2, ef_min, p_t, xi_shear, by_shear
     real(wp) :: p, f_c, f_t, low, high, cap, p_u, p_0, q, x, root, hardening, strength, increment, fracture, sound, work_hard
     logical :: by_work
@@ -260,8 +260,9 @@ contains
       root = sqrt(max(4*(1 - q*q)*x*x + 5*q*q - 4*q, 0.0_wp))
       section(i) = (2*(1 - q*q)*x + (2*q - 1)*root)/(4*(1 - q*q)*x*x + (1 - 2*q)*(1 - 2*q))
     end do
-    call failure_surface(n, c, pressure, elastic, factor_c, factor_t, full)
-    ! hardening: the strain at which it is over, from the strength there, and how far it has come
+    one(:n) = 1
+    call failure_surface(n, c, pressure, one, factor_c, factor_t, full)
+    ! hardening: the plastic strain from the elastic to the failure surface, and how far it has come
     !$omp simd private(hardening)
     do i = 1, n
       hardening = full(i)*section(i)*fc*(1 - elastic(i))/xi_shear

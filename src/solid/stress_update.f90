@@ -6,6 +6,7 @@
 module stress_update
   use cell_functions, only: chunk
   use constants, only: third
+  use crack_band, only: soften
   use drucker_prager, only: drucker_prager_stress, sliding_modulus
   use elastic, only: elastic_pressure, elastic_ratio, limit_tension
   use hjc, only: hjc_stress, hjc_modulus
@@ -115,7 +116,8 @@ contains
     real(wp), intent(in) :: mass(n)
     real(wp), intent(inout) :: plastic_strain(n), damage(n), plastic_work(n)
     type(step_type), intent(inout) :: s
-    real(wp) :: yield(chunk), before(chunk), dt_rate
+    real(wp) :: yield(chunk), before(chunk), dt_rate, failure_strain
+    integer :: i
     dt_rate = s%dt*m%reference_strain_rate
     select case (m%model)
     case (model_elastic)
@@ -132,10 +134,25 @@ contains
         m%reference_temperature, m%melt_temperature, dt_rate, s%strain, plastic_strain, plastic_work, mass, yield)
     end select
     if (m%jc_damage%active) before(:n) = plastic_strain
-    call return_to_yield(n, m%shear_modulus, m%hardening_modulus, m%ultimate_stress, m%failure_strain, m%failure_damage, yield, &
+    failure_strain = m%failure_strain
+    if (m%fracture_energy > 0) then
+      failure_strain = huge(failure_strain)
+      before(:n) = plastic_work
+      !$omp simd
+      do i = 1, n
+        yield(i) = yield(i)*(1 - damage(i))
+      end do
+    end if
+    call return_to_yield(n, m%shear_modulus, m%hardening_modulus, m%ultimate_stress, failure_strain, m%failure_damage, yield, &
       s%trial, s%middle, plastic_strain, damage, plastic_work, s%ratio)
     if (m%jc_damage%active) call accumulate_damage(n, m%jc_damage, dt_rate, s%strain, before, plastic_strain, plastic_work, mass, &
       s%old_pressure, s%trial, s%ratio, damage)
+    if (m%fracture_energy > 0) then
+      do i = 1, n
+        yield(i) = merge((plastic_work(i) - before(i))/s%middle(i), 0.0_wp, plastic_strain(i) > m%failure_strain)
+      end do
+      call soften(n, m%fracture_energy/s%length, yield, damage)
+    end if
   end subroutine metal_deviator
 
   !> Pressure of a metal and its limit of tension; after the deviator, whose work heats.
