@@ -190,7 +190,7 @@ contains
     do i = 1, n_solid_scenes
       if (.not. wanted(solid_scene_names(i), options%cases)) cycle
       do k = 1, merge(1, 2, options%quick)
-        speed = time_particles(i, sides(k), merge(10, 60, options%quick))
+        speed = time_particles(i, sides(k), merge(60, 300, options%quick))
         machine = calibrate()
         print '(a,2(",",i0),3(",",f0.2),3a)', trim(solid_scene_names(i)), speed%particles, sides(k), speed%nanoseconds, &
           machine%triad, machine%multiply_add, ',"', trim(solid_scene_titles(i)), '"'
