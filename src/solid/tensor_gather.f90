@@ -27,8 +27,8 @@ contains
     real(wp), intent(inout) :: momentum(0:frame%last(1), 3, 0:frame%last(2), 0:frame%last(3))
     type(line_functions) :: x(frame%n(1)), y, z
     type(lane_functions) :: lanes
-    real(wp) :: row(most_lanes, 4, 0:frame%last(1) + 2)
-    integer :: i, j, k, cell, first, last
+    real(wp) :: row(most_lanes, 4, 0:frame%last(1) + 2), w(piece, 3, 3), slope(piece, 3, 3)
+    integer :: i, j, k, cell, first, last, start, n
     do i = 1, frame%n(1)
       x(i) = functions_of(frame, 1, i)
     end do
@@ -47,58 +47,59 @@ contains
           cell = cell + 1
           first = cell_start(cell)
           last = cell_start(cell + 1) - 1
-          if (last < first) cycle
-          call update_cell(frame, flip, affine, x(i), y, z, i, j, k, first, last, change, node, capacity, n_field, f)
-          if (again) call add_momentum_by_tensor(x(i), y, z, lanes, last - first + 1, affine, capacity, f(first, 1), &
-            row(1, 1, i - 1))
+          do start = first, last, piece
+            n = min(piece, last - start + 1)
+            call tensor_weights(x(i), n, f(start, at_position), w(:, :, 1), slope(:, :, 1))
+            call tensor_weights(y, n, f(start, at_position + 1), w(:, :, 2), slope(:, :, 2))
+            call tensor_weights(z, n, f(start, at_position + 2), w(:, :, 3), slope(:, :, 3))
+            call update_cell(frame, flip, affine, x(i), y, z, i, j, k, start, n, w, slope, change, node, capacity, n_field, f)
+            if (again) call add_momentum_by_tensor(x(i), y, z, lanes, n, w(:, :, 1), affine, capacity, f(start, 1), &
+              row(1, 1, i - 1))
+          end do
         end do
         if (again) call add_row(frame%last, 3, 1, 4, y%n, z%n, row, j, k, momentum)
       end do
     end do
   end subroutine update_velocity_by_tensor
 
-  pure subroutine update_cell(frame, flip, affine, x, y, z, i, j, k, first, last, change, node, capacity, n_field, f)
+  !> New velocities of n <= piece particles from `start` on. w, slope: their functions; slope is used up.
+  pure subroutine update_cell(frame, flip, affine, x, y, z, i, j, k, start, n, w, slope, change, node, capacity, n_field, f)
     type(cell_frame), intent(in) :: frame
     real(wp), intent(in) :: flip
     type(line_functions), intent(in) :: x, y, z
-    integer, intent(in) :: affine, i, j, k, first, last, capacity, n_field
+    integer, intent(in) :: affine, i, j, k, start, n, capacity, n_field
+    real(wp), intent(in) :: w(piece, 3, 3)
+    real(wp), intent(inout) :: slope(piece, 3, 3)
     real(wp), intent(in) :: change(0:frame%last(1), 3, 0:frame%last(2), 0:frame%last(3))
     real(wp), intent(in) :: node(0:frame%last(1), 4, 0:frame%last(2), 0:frame%last(3))
     real(wp), intent(inout) :: f(capacity, n_field)
-    real(wp) :: w(piece, 3, 3), slope(piece, 3, 3), v(3, 3, 3), pic(piece)
-    integer :: start, n, d, q
-    do start = first, last, piece
-      n = min(piece, last - start + 1)
-      call tensor_weights(x, n, f(start, at_position), w(:, :, 1), slope(:, :, 1))
-      call tensor_weights(y, n, f(start, at_position + 1), w(:, :, 2), slope(:, :, 2))
-      call tensor_weights(z, n, f(start, at_position + 2), w(:, :, 3), slope(:, :, 3))
-      if (affine > 0) then
-        call affine_weights(x, n, f(start, at_position), w(:, :, 1), slope(:, :, 1))
-        call affine_weights(y, n, f(start, at_position + 1), w(:, :, 2), slope(:, :, 2))
-        call affine_weights(z, n, f(start, at_position + 2), w(:, :, 3), slope(:, :, 3))
-        do d = 1, 3
-          call values_of_cell(frame%last, 4, 1 + d, x%n, y%n, z%n, i, j, k, node, v)
-          call field_values(n, z%n, v, w, pic)
-          f(start:start + n - 1, at_velocity + d - 1) = pic(:n)
-          call field_gradients(n, z%n, v, w, slope, 1.0_wp, f(start, affine + 3*d - 3), f(start, affine + 3*d - 2), &
-            f(start, affine + 3*d - 1))
-        end do
-        cycle
-      end if
+    real(wp) :: v(3, 3, 3), pic(piece)
+    integer :: d, q
+    if (affine > 0) then
+      call affine_weights(x, n, f(start, at_position), w(:, :, 1), slope(:, :, 1))
+      call affine_weights(y, n, f(start, at_position + 1), w(:, :, 2), slope(:, :, 2))
+      call affine_weights(z, n, f(start, at_position + 2), w(:, :, 3), slope(:, :, 3))
       do d = 1, 3
-        call values_of_cell(frame%last, 3, d, x%n, y%n, z%n, i, j, k, change, v)
+        call values_of_cell(frame%last, 4, 1 + d, x%n, y%n, z%n, i, j, k, node, v)
+        call field_values(n, z%n, v, w, f(start, at_velocity + d - 1))
+        call field_gradients(n, z%n, v, w, slope, 1.0_wp, f(start, affine + 3*d - 3), f(start, affine + 3*d - 2), &
+          f(start, affine + 3*d - 1))
+      end do
+      return
+    end if
+    do d = 1, 3
+      call values_of_cell(frame%last, 3, d, x%n, y%n, z%n, i, j, k, change, v)
+      call field_values(n, z%n, v, w, pic)
+      do q = 1, n
+        f(start + q - 1, at_velocity + d - 1) = f(start + q - 1, at_velocity + d - 1) + pic(q)
+      end do
+      if (flip < 1) then
+        call values_of_cell(frame%last, 4, 1 + d, x%n, y%n, z%n, i, j, k, node, v)
         call field_values(n, z%n, v, w, pic)
         do q = 1, n
-          f(start + q - 1, at_velocity + d - 1) = f(start + q - 1, at_velocity + d - 1) + pic(q)
+          f(start + q - 1, at_velocity + d - 1) = flip*f(start + q - 1, at_velocity + d - 1) + (1 - flip)*pic(q)
         end do
-        if (flip < 1) then
-          call values_of_cell(frame%last, 4, 1 + d, x%n, y%n, z%n, i, j, k, node, v)
-          call field_values(n, z%n, v, w, pic)
-          do q = 1, n
-            f(start + q - 1, at_velocity + d - 1) = flip*f(start + q - 1, at_velocity + d - 1) + (1 - flip)*pic(q)
-          end do
-        end if
-      end do
+      end if
     end do
   end subroutine update_cell
 
@@ -116,8 +117,9 @@ contains
     integer, intent(out) :: n_moved, moved(chunk)
     type(line_functions) :: x, y, z
     real(wp) :: w(piece, 3, 3), slope(piece, 3, 3), v(3, 3, 3), step(piece, 3)
-    integer :: start, stop_at, n, d, i, j, k, q, outside
+    integer :: start, stop_at, n, d, i, j, k, q, outside, row(2)
     n_moved = 0
+    row = 0
     start = first
     do
       stop_at = min(cell_start(cell + 1) - 1, last, start + piece - 1)
@@ -127,8 +129,11 @@ contains
         j = mod((cell - 1)/frame%n(1), frame%n(2)) + 1
         i = mod(cell - 1, frame%n(1)) + 1
         x = functions_of(frame, 1, i)
-        y = functions_of(frame, 2, j)
-        z = functions_of(frame, 3, k)
+        if (j /= row(1) .or. k /= row(2)) then
+          y = functions_of(frame, 2, j)
+          z = functions_of(frame, 3, k)
+          row = [j, k]
+        end if
         call tensor_weights(x, n, f(start, at_position), w(:, :, 1), slope(:, :, 1))
         call tensor_weights(y, n, f(start, at_position + 1), w(:, :, 2), slope(:, :, 2))
         call tensor_weights(z, n, f(start, at_position + 2), w(:, :, 3), slope(:, :, 3))

@@ -28,6 +28,7 @@ contains
     type(line_functions) :: x(frame%n(1)), y, z
     type(lane_functions) :: lanes
     real(wp) :: momentum(most_lanes, 4, 0:frame%last(1) + 2), push(most_lanes, 3, 0:frame%last(1) + 2)
+    real(wp) :: w(piece, 3), slope_x(piece, 3), t(piece), bump(piece, 2, 2), slope(piece, 2, 2)
     integer :: i, j, k, cell, first, n
     do i = 1, frame%n(1)
       x(i) = functions_of(frame, 1, i)
@@ -48,8 +49,11 @@ contains
           cell = cell + 1
           do first = cell_start(cell), cell_start(cell + 1) - 1, piece
             n = min(piece, cell_start(cell + 1) - first)
-            call sum_cell(n, x(i), y, z, lanes, affine, capacity, f(first, 1), momentum(1, 1, i - 1))
-            call sum_force(n, x(i), y, z, lanes, capacity, f(first, 1), push(1, 1, i - 1))
+            call tensor_weights(x(i), n, f(first, at_position), w, slope_x)
+            call tensor_bumps(y, n, f(first, at_position + 1), t, bump(:, :, 1), slope(:, :, 1))
+            call tensor_bumps(z, n, f(first, at_position + 2), t, bump(:, :, 2), slope(:, :, 2))
+            call sum_cell(n, x(i), y, z, lanes, w, bump, affine, capacity, f(first, 1), momentum(1, 1, i - 1))
+            call sum_force(n, x(i)%n, lanes, w, slope_x, bump, slope, capacity, f(first, 1), push(1, 1, i - 1))
           end do
         end do
         call add_row(frame%last, 4, 0, 4, y%n, z%n, momentum, j, k, node)
@@ -58,17 +62,17 @@ contains
     end do
   end subroutine scatter_by_tensor
 
-  !> Adds masses and momenta of the particles of a cell to the sums of its row. f: their first row.
-  pure subroutine add_momentum_by_tensor(x, y, z, lanes, n, affine, capacity, f, row)
+  !> Adds masses and momenta of n <= piece particles of a cell to the sums of its row. f: their first row; w: their functions along x.
+  pure subroutine add_momentum_by_tensor(x, y, z, lanes, n, w, affine, capacity, f, row)
     type(line_functions), intent(in) :: x, y, z
     type(lane_functions), intent(in) :: lanes
     integer, intent(in) :: n, affine, capacity
-    real(wp), intent(in) :: f(capacity, *)
+    real(wp), intent(in) :: w(piece, 3), f(capacity, *)
     real(wp), intent(inout) :: row(most_lanes, 4, 3)
-    integer :: first
-    do first = 1, n, piece
-      call sum_cell(min(piece, n - first + 1), x, y, z, lanes, affine, capacity, f(first, 1), row)
-    end do
+    real(wp) :: t(piece), bump(piece, 2, 2), unused(piece, 2)
+    call tensor_bumps(y, n, f(1, at_position + 1), t, bump(:, :, 1), unused)
+    call tensor_bumps(z, n, f(1, at_position + 2), t, bump(:, :, 2), unused)
+    call sum_cell(n, x, y, z, lanes, w, bump, affine, capacity, f, row)
   end subroutine add_momentum_by_tensor
 
   !> Adds columns skip+1, skip+2, ... of the sums of a row of cells to the variables of its nodes.
@@ -91,18 +95,18 @@ contains
   end subroutine add_row
 
   !> Mass and momentum of n <= piece particles at the nodes of their cell: total(lane, variable, function along x).
-  pure subroutine sum_cell(n, x, y, z, lanes, affine, capacity, f, total)
+  !> w: functions along x; bump: what those along y and z are made of.
+  pure subroutine sum_cell(n, x, y, z, lanes, w, bump, affine, capacity, f, total)
     integer, intent(in) :: n, affine, capacity
     type(line_functions), intent(in) :: x, y, z
     type(lane_functions), intent(in) :: lanes
-    real(wp), intent(in) :: f(capacity, *)
+    real(wp), intent(in) :: w(piece, 3), bump(piece, 2, 2), f(capacity, *)
     real(wp), intent(inout) :: total(most_lanes, 4, 3)
-    real(wp) :: w(piece, 3), slope(piece, 3), t(piece, 3), bump(piece, 2, 2), unused(piece, 2)
-    call tensor_weights(x, n, f(1, at_position), w, slope)
-    call tensor_bumps(y, n, f(1, at_position + 1), t(:, 2), bump(:, :, 1), unused)
-    call tensor_bumps(z, n, f(1, at_position + 2), t(:, 3), bump(:, :, 2), unused)
+    real(wp) :: t(piece, 3), unused(piece, 2), other(piece, 2)
     if (affine > 0) then
-      call tensor_bumps(x, n, f(1, at_position), t(:, 1), unused, slope(:, :2))
+      call tensor_bumps(x, n, f(1, at_position), t(:, 1), unused, other)
+      call tensor_bumps(y, n, f(1, at_position + 1), t(:, 2), unused, other)
+      call tensor_bumps(z, n, f(1, at_position + 2), t(:, 3), unused, other)
       call sum_affine(n, x%n, lanes%y, lanes%z, lanes%at_y, lanes%at_z, x%at, 1/[x%inverse, y%inverse, z%inverse], t, w, &
         bump, f(1, at_mass), f(1, at_velocity), f(1, at_velocity + 1), f(1, at_velocity + 2), capacity, f(1, affine), total)
     else
@@ -193,17 +197,13 @@ contains
   end subroutine sum_affine
 
   !> Internal force of n <= piece particles at the nodes of their cell: total(lane, component, function along x).
-  pure subroutine sum_force(n, x, y, z, lanes, capacity, f, total)
-    integer, intent(in) :: n, capacity
-    type(line_functions), intent(in) :: x, y, z
+  pure subroutine sum_force(n, n_x, lanes, w, slope_x, bump, slope, capacity, f, total)
+    integer, intent(in) :: n, n_x, capacity
     type(lane_functions), intent(in) :: lanes
-    real(wp), intent(in) :: f(capacity, *)
+    real(wp), intent(in) :: w(piece, 3), slope_x(piece, 3), bump(piece, 2, 2), slope(piece, 2, 2), f(capacity, *)
     real(wp), intent(inout) :: total(most_lanes, 3, 3)
-    real(wp) :: w(piece, 3), slope_x(piece, 3), t(piece), bump(piece, 2, 2), slope(piece, 2, 2), flux(piece, 6)
+    real(wp) :: flux(piece, 6)
     integer :: q
-    call tensor_weights(x, n, f(1, at_position), w, slope_x)
-    call tensor_bumps(y, n, f(1, at_position + 1), t, bump(:, :, 1), slope(:, :, 1))
-    call tensor_bumps(z, n, f(1, at_position + 2), t, bump(:, :, 2), slope(:, :, 2))
     !$omp simd
     do q = 1, n
       flux(q, 1) = -f(q, at_volume)*(f(q, sxx) - f(q, at_viscosity))
@@ -213,7 +213,7 @@ contains
       flux(q, 5) = -f(q, at_volume)*f(q, sxz)
       flux(q, 6) = -f(q, at_volume)*f(q, sxy)
     end do
-    call sum_flux(n, x%n, lanes%y, lanes%z, w, slope_x, bump, slope, flux, total)
+    call sum_flux(n, n_x, lanes%y, lanes%z, w, slope_x, bump, slope, flux, total)
   end subroutine sum_force
 
   pure subroutine sum_flux(n, n_x, y, z, wx, slope_x, bump, slope, flux, total)

@@ -26,14 +26,15 @@ module solid_speed
 
 contains
 
-  !> which: number of the scene; side: cells of a brick in every direction, 0: chosen by the code.
-  function time_particles(which, side, windows) result(speed)
-    integer, intent(in) :: which, side, windows
+  !> which: number of the scene; halves: two bricks in every direction, else the code chooses.
+  function time_particles(which, halves, windows) result(speed)
+    integer, intent(in) :: which, windows
+    logical, intent(in) :: halves
     type(particle_speed) :: speed
     type(solid_scene) :: scene
     real(wp) :: began, best
     integer :: i
-    call open_scene(which, side, scene)
+    call open_scene(which, halves, scene)
     call run_steps(scene, warm_up)
     best = huge(best)
     do i = 1, windows
@@ -46,25 +47,27 @@ contains
   end function time_particles
 
   !> A copper-like bar of 21,107 particles, 190 m/s, or a block of concrete of 27,000 particles, 100 m/s; eight particles per cell.
-  subroutine open_scene(which, side, scene)
-    integer, intent(in) :: which, side
+  subroutine open_scene(which, halves, scene)
+    integer, intent(in) :: which
+    logical, intent(in) :: halves
     type(solid_scene), intent(inout) :: scene
     character(24) :: name
     type(body_group) :: bar
     integer :: brick(3)
     name = solid_scene_names(which)
-    brick = side
     call empty_deck(scene%deck)
     if (index(name, 'splines') + index(name, 'affine') > 0) scene%deck%solid%shape = 'quadratic'
     if (index(name, 'affine') > 0) scene%deck%solid%transfer = 'apic'
     scene%deck%boundary%solid_z_low = 'symmetry'
     if (name(:3) == 'hjc') then
+      brick = merge([12, 12, 10], 0, halves)
       scene%deck%material = [concrete('m')]
       call add_box(scene%deck, 'block', 'm', [0.05_wp, 0.05_wp, 0.0_wp], [0.2_wp, 0.2_wp, 0.15_wp], 0.005_wp, &
         [0.0_wp, 0.0_wp, -100.0_wp])
       call start_scene(scene, [24, 24, 20], [0.0_wp, 0.0_wp, 0.0_wp], [0.24_wp, 0.24_wp, 0.2_wp], brick)
       return
     end if
+    brick = merge([10, 10, 18], 0, halves)
     select case (name(:5))
     case ('johns')
       scene%deck%material = [metal('m', 'johnson_cook')]
