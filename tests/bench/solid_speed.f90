@@ -12,10 +12,9 @@ module solid_speed
   integer, parameter, public :: n_solid_scenes = 8
   character(24), parameter, public :: solid_scene_names(n_solid_scenes) = [character(24) :: 'plasticity', 'johnson_cook', 'hjc', &
     'elastic', 'plasticity_splines', 'johnson_cook_splines', 'hjc_splines', 'plasticity_affine']
-  character(64), parameter, public :: solid_scene_titles(n_solid_scenes) = [character(64) :: &
-    'Taylor bar, J2 with linear hardening', 'Taylor bar, Johnson-Cook with temperature', 'HJC block against a wall', &
-    'Taylor bar, elastic', 'Taylor bar, J2, quadratic', 'Taylor bar, Johnson-Cook, quadratic', 'HJC block, quadratic', &
-    'Taylor bar, J2, quadratic, APIC']
+  character(64), parameter, public :: solid_scene_titles(n_solid_scenes) = [character(64) :: 'Taylor bar, J2', &
+    'Taylor bar, Johnson-Cook', 'Block, HJC', 'Taylor bar, elastic', 'Taylor bar, J2, quadratic', &
+    'Taylor bar, Johnson-Cook, quadratic', 'Block, HJC, quadratic', 'Taylor bar, J2, quadratic, APIC']
 
   type, public :: particle_speed
     integer :: particles = 0
