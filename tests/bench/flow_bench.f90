@@ -183,16 +183,15 @@ contains
   end subroutine run_speed
 
   subroutine run_particles()
-    integer, parameter :: sides(2) = [0, 4]
     type(particle_speed) :: speed
     integer :: i, k
-    print '(a)', 'case,particles,brick,ns_per_particle_step,triad_gb_s,multiply_add_gflop_s,title'
+    print '(a)', 'case,particles,bricks,ns_per_particle_step,triad_gb_s,multiply_add_gflop_s,title'
     do i = 1, n_solid_scenes
       if (.not. wanted(solid_scene_names(i), options%cases)) cycle
       do k = 1, merge(1, 2, options%quick)
-        speed = time_particles(i, sides(k), merge(10, 60, options%quick))
+        speed = time_particles(i, k == 2, merge(60, 300, options%quick))
         machine = calibrate()
-        print '(a,2(",",i0),3(",",f0.2),3a)', trim(solid_scene_names(i)), speed%particles, sides(k), speed%nanoseconds, &
+        print '(a,2(",",i0),3(",",f0.2),3a)', trim(solid_scene_names(i)), speed%particles, merge(8, 0, k == 2), speed%nanoseconds, &
           machine%triad, machine%multiply_add, ',"', trim(solid_scene_titles(i)), '"'
         flush (6)
       end do
