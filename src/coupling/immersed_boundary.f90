@@ -17,7 +17,7 @@ module immersed_boundary
   use mesh, only: mesh_type
   use mixture, only: cell_energies, close_cell
   use reductions, only: any_rank, reduce_sum
-  use solid_cover, only: cover_cells, wall_normals
+  use solid_cover, only: cover_cells, smooth_part, wall_normals
   use solid_state, only: solid_type
   implicit none
   private
@@ -259,6 +259,11 @@ contains
     type(coupling_type), intent(inout) :: coupling
     integer :: b, c
     flow%slip = coupling%slip
+    call fill(mesh, halo, coupling%solid_part, 1)
+    do b = 1, mesh%n_local
+      call mirror_ghosts(mesh, mesh%local(b), coupling%solid_part(b))
+      call smooth_part(mesh%brick_cells, mesh%active, mesh%ghost, coupling%solid_part(b)%a(:, 1, :, :))
+    end do
     call fill(mesh, halo, coupling%solid_part, 1)
     do b = 1, mesh%n_local
       call mirror_ghosts(mesh, mesh%local(b), coupling%solid_part(b))

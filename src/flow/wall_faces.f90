@@ -35,8 +35,11 @@ contains
     density = cell(layout%density_row)
     p = cell(layout%pressure_row)
     c = cell(layout%sound_speed_row)
-    if (slip) then
+    if (slip .and. any(abs(normal) > 0)) then
       mirrored = v - 2*sum((v - velocity)*normal)*normal
+    else if (slip) then ! between two walls: along the axis
+      mirrored = v
+      mirrored(d) = 2*velocity(d) - v(d)
     else
       mirrored = 2*velocity - v
     end if
