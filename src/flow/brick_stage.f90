@@ -409,6 +409,11 @@ contains
       integer, intent(in) :: j, k
       type(row_report) :: row
       integer :: v
+      if (present(wall) .and. present(open)) then ! what passes walls is nothing to the cells behind
+        do v = 1, layout%n_fluxes
+          where (open(1:n(1), 1, j, k) <= 0) s%d(1:n(1), v) = 0
+        end do
+      end if
       if (layout%n_materials > 1) then
         call update_row(n(1), ld, layout, eos, stage%first, stage%part, stage%trace, stage%floor_pressure, stage%lowest, s%d, &
           from(1, 1, j, k), start(1, 1, j, k), new(1, 1, j, k), s%row, row)
