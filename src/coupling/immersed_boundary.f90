@@ -15,6 +15,7 @@ module immersed_boundary
   use interface_cells, only: interface_list, list_interface, force_velocity, add_wall_impulse, &
     spread_force
   use kinds, only: wp
+  use loose_particles, only: list_loose, drag_loose
   use mesh, only: mesh_type
   use mixture, only: cell_energies, close_cell
   use reductions, only: any_rank, reduce_sum
@@ -127,6 +128,8 @@ contains
       call close_cells(mesh, coupling%kind(b), coupling%closed_from, flow%open(b), flow%wall_impulse(b))
       call list_interface(mesh%brick_cells, mesh%ghost, coupling%kind(b)%a(:, 1, :, :), interface_cell, &
                           merge(fluid_cell, inside_cell, coupling%moving_wall), coupling%list(b))
+      if (coupling%moving_wall) call list_loose(mesh, solid, b, coupling%kind(b)%a(:, 1, :, :), coupling%closed_from, &
+                                                coupling%list(b))
     end do
   end subroutine immerse_solid
 
@@ -296,13 +299,20 @@ contains
     call force_buffer(mesh, flow, coupling, flow%current, 1.0_wp)
   end subroutine force_first_state
 
-  !> Forces the state that a stage has made.
-  subroutine force_stage(mesh, flow, coupling, stage)
+  !> Forces the state that a stage of a step of length dt has made; loose particles drag at the end of the step.
+  subroutine force_stage(mesh, flow, coupling, stage, dt)
     type(mesh_type), intent(in) :: mesh
     type(flow_type), intent(inout) :: flow
     type(coupling_type), intent(inout) :: coupling
     integer, intent(in) :: stage
+    real(wp), intent(in) :: dt
+    integer :: b
     call force_buffer(mesh, flow, coupling, flow%target(stage), state_weight(stage))
+    if (stage < 3) return
+    do b = 1, mesh%n_local
+      if (coupling%list(b)%n_loose > 0) call drag_loose(flow%layout, flow%eos, mesh%ghost, dt, mesh%cell_volume, coupling%list(b), &
+        flow%w(b, flow%target(stage))%a)
+    end do
   end subroutine force_stage
 
   subroutine force_buffer(mesh, flow, coupling, buffer, weight)

@@ -13,6 +13,8 @@ module interface_cells
     integer, allocatable :: closed(:, :) !< (3, n) closed faces per direction: those at the high side less those at the low side
     real(wp), allocatable :: velocity(:, :) !< (3, n) of the solid at the centre
     real(wp), allocatable :: impulse(:, :) !< (3, n) momentum given to the solid during the step
+    integer :: n_loose = 0 !< cells at the end of the list that hold loose particles
+    real(wp), allocatable :: mass(:), area(:) !< (n_loose) of those particles: mass, and area across the flow
   end type interface_list
 
 contains

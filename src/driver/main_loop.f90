@@ -66,7 +66,7 @@ contains
         call scene%watch%start('flow')
         call advance_stage(scene%mesh, scene%halo, scene%flow, stage, dt)
         call scene%watch%stop('flow')
-        if (scene%coupled) call force_stage(scene%mesh, scene%flow, scene%coupling, stage)
+        if (scene%coupled) call force_stage(scene%mesh, scene%flow, scene%coupling, stage, dt)
       end do
       call accept_step(scene%flow)
       scene%flow%time = scene%flow%time + dt
