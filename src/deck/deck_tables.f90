@@ -7,12 +7,14 @@ module deck_tables
   use deck_boundary, only: boundary_keys
   use deck_flow, only: flow_keys
   use deck_material, only: material_keys
+  use deck_material_test, only: material_test_keys
   use deck_region, only: region_keys
   use deck_charge, only: charge_keys
   use deck_detonator, only: detonator_keys
   use deck_solid, only: solid_keys
   use deck_body, only: body_keys, hole_keys
   use deck_reinforcement, only: reinforcement_keys
+  use deck_heterogeneity, only: heterogeneity_keys
   use deck_clamp, only: clamp_keys
   use deck_coupling, only: coupling_keys
   use deck_gauge, only: gauge_keys
@@ -21,9 +23,9 @@ module deck_tables
   private
   public :: allocate_groups, group_count, group_number, make_table, make_tables, find_table, may_repeat
 
-  character(16), parameter, public :: group_names(16) = [character(16) :: 'run', 'mesh', 'boundary', 'flow', 'material', &
-    'region', 'charge', 'detonator', 'solid', 'body', 'hole', 'reinforcement', 'clamp', 'coupling', 'gauge', &
-    'output'] !< in deck order
+  character(16), parameter, public :: group_names(18) = [character(16) :: 'run', 'mesh', 'boundary', 'flow', 'material', &
+    'region', 'charge', 'detonator', 'solid', 'body', 'hole', 'reinforcement', 'heterogeneity', 'clamp', 'coupling', &
+    'gauge', 'output', 'material_test'] !< in deck order
 
 contains
 
@@ -40,7 +42,8 @@ contains
   pure logical function may_repeat(group)
     character(*), intent(in) :: group
     select case (group)
-    case ('material', 'region', 'charge', 'detonator', 'body', 'hole', 'reinforcement', 'clamp', 'gauge')
+    case ('material', 'region', 'charge', 'detonator', 'body', 'hole', 'reinforcement', 'heterogeneity', 'clamp', 'gauge', &
+      'material_test')
       may_repeat = .true.
     case default
       may_repeat = .false.
@@ -52,8 +55,8 @@ contains
     type(deck_type), intent(inout) :: deck
     integer, intent(in) :: count(size(group_names))
     allocate (deck%material(count(5)), deck%region(count(6)), deck%charge(count(7)), deck%detonator(count(8)))
-    allocate (deck%body(count(10)), deck%hole(count(11)), deck%reinforcement(count(12)), deck%clamp(count(13)))
-    allocate (deck%gauge(count(15)))
+    allocate (deck%body(count(10)), deck%hole(count(11)), deck%reinforcement(count(12)), deck%heterogeneity(count(13)))
+    allocate (deck%clamp(count(14)), deck%gauge(count(16)), deck%material_test(count(18)))
   end subroutine allocate_groups
 
   !> How many groups of this name the deck type holds (1 for one that may not be repeated, whether the file has it or not).
@@ -76,10 +79,14 @@ contains
       n = size(deck%hole)
     case ('reinforcement')
       n = size(deck%reinforcement)
+    case ('heterogeneity')
+      n = size(deck%heterogeneity)
     case ('clamp')
       n = size(deck%clamp)
     case ('gauge')
       n = size(deck%gauge)
+    case ('material_test')
+      n = size(deck%material_test)
     end select
   end function group_count
 
@@ -114,6 +121,8 @@ contains
       call hole_keys(deck%hole(i), table)
     case ('reinforcement')
       call reinforcement_keys(deck%reinforcement(i), table)
+    case ('heterogeneity')
+      call heterogeneity_keys(deck%heterogeneity(i), table)
     case ('clamp')
       call clamp_keys(deck%clamp(i), table)
     case ('coupling')
@@ -122,6 +131,8 @@ contains
       call gauge_keys(deck%gauge(i), table)
     case ('output')
       call output_keys(deck%output, table)
+    case ('material_test')
+      call material_test_keys(deck%material_test(i), table)
     end select
     table%index = i
   end subroutine make_table

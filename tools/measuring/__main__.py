@@ -4,16 +4,19 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "plotting"))
 
+import fragments  # noqa: E402
+import particle_blast  # noqa: E402
 import shock_helium  # noqa: E402
 import slab  # noqa: E402
 import surface_burst  # noqa: E402
 import taylor  # noqa: E402
 
 MEASURES = {"shock-helium": shock_helium.measure, "slab": slab.measure, "taylor": taylor.measure}
-TOGETHER = {"surface-burst": surface_burst.measure_all}  # all runs side by side
+TOGETHER = {"fragments": fragments.measure_all, "particle-blast": particle_blast.measure_all,
+            "surface-burst": surface_burst.measure_all}  # all runs side by side
 
 if len(sys.argv) < 3 or sys.argv[1] not in {**MEASURES, **TOGETHER}:
-    sys.exit("usage: tools/measure shock-helium|slab|surface-burst|taylor RUN_FOLDER...")
+    sys.exit("usage: tools/measure fragments|particle-blast|shock-helium|slab|surface-burst|taylor RUN_FOLDER...")
 folders = [pathlib.Path(folder) for folder in sys.argv[2:]]
 if sys.argv[1] in TOGETHER:
     TOGETHER[sys.argv[1]](folders)
