@@ -8,16 +8,18 @@
 !> open again is built from its open neighbours and booked in.
 module immersed_boundary
   use blocks, only: block, allocate_cells
+  use cell_functions, only: cell_frame
   use cell_types, only: classify_cells, mirror_ghosts, fluid_cell, interface_cell, inside_cell
   use flow_state, only: flow_type
   use halo, only: halo_type, fill
-  use interface_cells, only: interface_list, list_interface, wall_velocity, force_velocity, add_wall_impulse, &
+  use interface_cells, only: interface_list, list_interface, force_velocity, add_wall_impulse, &
     spread_force
   use kinds, only: wp
   use mesh, only: mesh_type
   use mixture, only: cell_energies, close_cell
   use reductions, only: any_rank, reduce_sum
-  use solid_state, only: solid_type
+  use solid_load, only: cell_velocity
+  use solid_state, only: solid_type, frame_of
   implicit none
   private
   public :: start_coupling, restore_coupling, immerse_solid, find_wall_velocity, force_first_state, force_stage, collect_force
@@ -220,15 +222,20 @@ contains
     if (n > 0) w(i, :n_rows, j, k) = mean/n
   end subroutine mean_of_neighbours
 
-  !> Velocity of the solid in the interface cells, from the nodes.
+  !> Velocity of the solid in the interface cells, from the nodes (eq. 29).
   subroutine find_wall_velocity(mesh, solid, coupling)
     type(mesh_type), intent(in) :: mesh
     type(solid_type), intent(in) :: solid
     type(coupling_type), intent(inout) :: coupling
-    integer :: b
+    type(cell_frame) :: frame
+    integer :: b, c
     do b = 1, mesh%n_local
-      if (coupling%list(b)%n == 0) cycle
-      call wall_velocity(solid%node(b)%a, coupling%list(b))
+      frame = frame_of(mesh, solid%order, b)
+      associate (list => coupling%list(b))
+        do c = 1, list%n
+          list%velocity(:, c) = cell_velocity(solid, frame, b, list%cell(:, c))
+        end do
+      end associate
     end do
   end subroutine find_wall_velocity
 

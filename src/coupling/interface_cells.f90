@@ -4,7 +4,7 @@ module interface_cells
   use kinds, only: wp
   implicit none
   private
-  public :: list_interface, wall_velocity, force_velocity, add_wall_impulse, spread_force
+  public :: list_interface, force_velocity, add_wall_impulse, spread_force
 
   !> The interface cells of a brick, in the order of the cells.
   type, public :: interface_list
@@ -52,20 +52,6 @@ contains
     end function step
 
   end subroutine list_interface
-
-  !> Mean velocity of the nodes of each interface cell (eq. 29); every node of a particle cell has mass.
-  !> node: mass and velocity, lower bounds 0.
-  subroutine wall_velocity(node, list)
-    real(wp), intent(in) :: node(0:, :, 0:, 0:)
-    type(interface_list), intent(inout) :: list
-    integer :: c, i, j, k, d
-    do c = 1, list%n
-      i = list%cell(1, c); j = list%cell(2, c); k = list%cell(3, c)
-      do d = 1, 3
-        list%velocity(d, c) = 0.125_wp*sum(node(i - 1:i, d + 1, j - 1:j, k - 1:k))
-      end do
-    end do
-  end subroutine wall_velocity
 
   !> Sets the fluid velocity in the interface cells to the solid's; what momentum this takes goes to the solid.
   !> w: fluid state (x, variable, y, z) with ghost layers; partial densities first; at_velocity: index of the first velocity;

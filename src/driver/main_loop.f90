@@ -82,6 +82,9 @@ contains
     integer :: part
     real(wp) :: dt
     call scene%watch%start('solid')
+    scene%solid%step = scene%clock%step
+    scene%solid%time = scene%clock%time
+    scene%solid%limiter = scene%clock%limiter
     dt = scene%clock%dt/scene%clock%solid_steps
     do part = 1, scene%clock%solid_steps
       if (scene%coupled) then

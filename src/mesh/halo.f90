@@ -8,7 +8,7 @@ module halo
   use parallel, only: world, my_rank => rank, n_ranks
   implicit none
   private
-  public :: plan_halo, fill, add
+  public :: plan_halo, fill, add, last_node
 
   !> One transfer: the receiver's neighbour in this direction gives it a slab.
   type :: transfer_type
@@ -135,15 +135,33 @@ contains
     end do
   end subroutine fill
 
+  !> Index of the last node that a brick holds in each direction, the first being 0. layers: see add. With two layers an inactive
+  !> direction has one node.
+  pure function last_node(mesh, layers) result(last)
+    type(mesh_type), intent(in) :: mesh
+    integer, intent(in) :: layers
+    integer :: last(3)
+    last = merge(mesh%brick_cells + layers - 1, merge(mesh%brick_cells, 0, layers == 1), mesh%active)
+  end function last_node
+
   !> Each node that bricks share gets the sum of what all of them hold, added in the order of their places: the same bits in
-  !> every sharer, on any number of ranks. A brick with an unallocated block takes no part. n_var: variables 1..n_var are added.
-  subroutine add(mesh, halo, blocks, n_var)
+  !> every sharer, on any number of ranks. A brick with an unallocated block takes no part. n_var: variables 1..n_var are added;
+  !> layers: of nodes that two neighbours share, 1 (default, nodes 0..n of n cells) or 2 (nodes 0..n+1, bricks of two cells and
+  !> more).
+  subroutine add(mesh, halo, blocks, n_var, layers)
     type(mesh_type), intent(in) :: mesh
     type(halo_type), intent(inout) :: halo
     type(block), intent(inout) :: blocks(:)
     integer, intent(in) :: n_var
-    integer :: b, i, j, k, slab(-1:1, -1:1, -1:1)
-    call transfer_slabs(mesh, halo, blocks, n_var, nodes_to_give, .false., .true.)
+    integer, intent(in), optional :: layers
+    integer :: b, i, j, k, shared, slab(-1:1, -1:1, -1:1)
+    shared = 1
+    if (present(layers)) shared = layers
+    if (shared == 1) then
+      call transfer_slabs(mesh, halo, blocks, n_var, nodes_to_give, .false., .true.)
+    else
+      call transfer_slabs(mesh, halo, blocks, n_var, pairs_to_give, .false., .true.)
+    end if
     do b = 1, mesh%n_local
       if (.not. allocated(blocks(b)%a)) cycle
       slab = 0
@@ -155,13 +173,14 @@ contains
           end do
         end do
       end do
-      call sum_shared(mesh%brick_cells, slab, halo%received, n_var, blocks(b))
+      call sum_shared(last_node(mesh, shared), merge(shared, 0, mesh%active), slab, halo%received, n_var, blocks(b))
     end do
   end subroutine add
 
-  !> Sums the nodes of each face, edge and corner of one brick over its sharers, low ones first.
-  subroutine sum_shared(n, slab, received, n_var, b)
-    integer, intent(in) :: n(3), slab(-1:1, -1:1, -1:1), n_var
+  !> Sums the shared nodes at each face, edge and corner of one brick over its sharers, low ones first.
+  !> n: last node; shared: layers by direction.
+  subroutine sum_shared(n, shared, slab, received, n_var, b)
+    integer, intent(in) :: n(3), shared(3), slab(-1:1, -1:1, -1:1), n_var
     real(wp), intent(in) :: received(:)
     type(block), intent(inout) :: b
     real(wp), allocatable :: total(:, :, :, :)
@@ -171,8 +190,8 @@ contains
         do i = -1, 1
           c = [i, j, k]
           if (all(c == 0)) cycle
-          first = merge(n, merge(0, 1, c < 0), c > 0)
-          last = merge(n, merge(0, n - 1, c < 0), c > 0)
+          first = merge(n - shared + 1, merge(0, shared, c < 0), c > 0)
+          last = merge(n, merge(shared - 1, n - shared, c < 0), c > 0)
           if (any(last < first)) cycle
           allocate (total(first(1):last(1), n_var, first(2):last(2), first(3):last(3)), source=0.0_wp)
           do dk = min(k, 0), max(k, 0)
@@ -182,8 +201,8 @@ contains
                 if (all(d == 0)) then
                   total = total + b%a(first(1):last(1), :n_var, first(2):last(2), first(3):last(3))
                 else if (slab(di, dj, dk) > 0) then
-                  slab_first = merge(n, 0, d > 0)
-                  slab_last = merge(0, n, d < 0)
+                  slab_first = merge(n - shared + 1, 0, d > 0)
+                  slab_last = merge(shared - 1, n, d < 0)
                   call add_part(received(slab(di, dj, dk):), slab_first, slab_last, n_var, first, last, total)
                 end if
               end do
@@ -342,6 +361,17 @@ contains
     first = merge(mesh%brick_cells, 0, direction < 0)
     last = merge(0, mesh%brick_cells, direction > 0)
   end subroutine nodes_to_give
+
+  !> Likewise where two layers are shared.
+  pure subroutine pairs_to_give(mesh, direction, first, last)
+    type(mesh_type), intent(in) :: mesh
+    integer, intent(in) :: direction(3)
+    integer, intent(out) :: first(3), last(3)
+    integer :: n(3)
+    n = last_node(mesh, 2)
+    first = merge(n - 1, 0, direction < 0)
+    last = merge(1, n, direction > 0)
+  end subroutine pairs_to_give
 
   !> Copies a box of one block to a box of the same shape in another. Thin boxes go cell by cell: a call to copy two numbers costs
   !> more than the copy.

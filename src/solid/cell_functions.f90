@@ -1,4 +1,4 @@
-!> The trilinear functions of one cell.
+!> Where the cells of a brick lie, and the trilinear functions of one cell. Module tensor_functions has the others.
 !>
 !> Nodes of a cell are counted x fastest: 1 = (0,0,0), 2 = (1,0,0), 3 = (0,1,0) ... 8 = (1,1,1).
 !>
@@ -21,6 +21,10 @@ module cell_functions
     real(wp) :: inverse(3) = 1 !< 1/spacing
     integer :: offset(3) = 0 !< cells of the domain before the brick
     integer :: n(3) = 1 !< cells of the brick
+    integer :: order = 1 !< of the functions: 1 linear, 2 quadratic
+    integer :: last(3) = 1 !< last node of the brick, the first being 0
+    logical :: active(3) = .true. !< directions with more than one cell
+    logical :: at_low(3) = .false., at_high(3) = .false. !< the brick ends at this face of the domain
   end type cell_frame
 
 contains

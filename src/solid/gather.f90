@@ -6,15 +6,16 @@ module gather
   use scatter, only: add_momentum
   implicit none
   private
-  public :: update_velocity, gather_motion
+  public :: update_velocity, gather_motion, count_outside, list_outside
 
 contains
 
-  !> Nodes to particles and back: v = flip (v + sum N dv) + (1 - flip) sum N v_node, then adds the new particle momenta to
+  !> Nodes to particles and back: v = flip (v + sum N dv) + (1 - flip) sum N v_node; with `again` adds the new particle momenta to
   !> momentum (MUSL). change: velocity change dv of the nodes; node: (mass, new velocity).
-  pure subroutine update_velocity(frame, flip, capacity, n_field, f, cell_start, change, node, momentum)
+  pure subroutine update_velocity(frame, flip, again, capacity, n_field, f, cell_start, change, node, momentum)
     type(cell_frame), intent(in) :: frame
     real(wp), intent(in) :: flip
+    logical, intent(in) :: again
     integer, intent(in) :: capacity, n_field, cell_start(:)
     real(wp), intent(inout) :: f(capacity, n_field)
     real(wp), intent(in) :: change(0:frame%n(1), 3, 0:frame%n(2), 0:frame%n(3))
@@ -37,7 +38,7 @@ contains
               call add_field(n, c(:, d), wx(:, 2), wy(:, 2), wz(:, 2), f(first, at_velocity + d - 1))
             end do
             if (flip < 1) call blend(frame, flip, n, [i, j, k], node, wx, wy, wz, capacity, n_field, f, first)
-            call add_momentum(frame, n, capacity, f(first, 1), wx, wy, wz, i, j, k, momentum)
+            if (again) call add_momentum(frame, n, capacity, f(first, 1), wx, wy, wz, i, j, k, momentum)
           end do
         end do
       end do
@@ -78,14 +79,14 @@ contains
     end do
   end subroutine blend
 
-  !> Moves particles first..last with the node velocities and gives the gradient increments from the mapped velocities.
+  !> Moves particles first..last over dt with the node velocities and gives the gradient increments from the mapped velocities.
   !>
-  !> cell: the cell that holds particle first; on return the cell of the last one. gradient(:,3*(i-1)+j) = dt dv_i/dx_j.
+  !> cell: the cell that holds particle first; on return the cell of the last one. gradient(:,3*(i-1)+j) = strain_dt dv_i/dx_j.
   !> moved(:n_moved): particles that are now outside their cell.
-  pure subroutine gather_motion(frame, dt, capacity, n_field, f, cell_start, first, last, cell, node, mapped, gradient, &
-    n_moved, moved)
+  pure subroutine gather_motion(frame, dt, strain_dt, capacity, n_field, f, cell_start, first, last, cell, node, mapped, &
+    gradient, n_moved, moved)
     type(cell_frame), intent(in) :: frame
-    real(wp), intent(in) :: dt
+    real(wp), intent(in) :: dt, strain_dt
     integer, intent(in) :: capacity, n_field, cell_start(:), first, last
     real(wp), intent(inout) :: f(capacity, n_field)
     integer, intent(inout) :: cell
@@ -115,7 +116,7 @@ contains
           call add_field(n, c(:, d), x, y, z, f(start, at_position + d - 1))
         end do
         call trilinear(frame%n, 3, mapped, 0, i, j, k, c)
-        c = dt*c
+        c = strain_dt*c
         do d = 1, 3
           call field_gradient(n, c(:, d), frame%inverse, x, y, z, gradient(q, 3*d - 2), gradient(q, 3*d - 1), gradient(q, 3*d))
         end do

@@ -1,16 +1,15 @@
 !> Particles that leave their brick: to another brick of this rank, to another rank, or out of the domain.
 module migration
-  use errors, only: fatal
   use kinds, only: wp
   use mesh, only: mesh_type
   use mpi_f08, only: MPI_DOUBLE_PRECISION, MPI_Get_count, MPI_Irecv, MPI_Isend, MPI_Probe, MPI_Recv, MPI_Request, MPI_Status, &
     MPI_STATUSES_IGNORE, MPI_STATUS_IGNORE, MPI_Waitall
   use parallel, only: world, my_rank => rank, n_ranks
+  use particle_checks, only: in_reach, particle_error
   use particles, only: at_position, at_velocity, at_mass, at_energy, append_particle, note_moved, sort_particles, particle_block
   use solid_state, only: solid_type, cell_coordinate, face_free, book_lost_mass, book_lost_momentum, book_lost_kinetic, &
     book_lost_internal, &
     book_lost_count
-  use text, only: str
   implicit none
   private
   public :: route_particle, exchange_particles
@@ -44,6 +43,8 @@ contains
     integer :: global, location, local_cell(3), step(3), target, d, new_cell
     logical :: outside
     associate (blk => solid%block(set, local), brick => mesh%brick(mesh%local(local)))
+      if (.not. in_reach(mesh, blk%f(index, at_position:at_position + 2))) &
+        call particle_error(mesh, solid, set, local, index, 'is nowhere near the domain')
       outside = .false.
       do d = 1, 3
         if (mesh%periodic(d)) call wrap(mesh, d, blk%f(index, at_position + d - 1))
@@ -61,8 +62,7 @@ contains
         call note_moved(blk, index, 0)
         return
       end if
-      if (any(abs(step) > 1)) call fatal('solid: particle '//str(blk%id(index))//' at '//str(blk%f(index, at_position))//', '// &
-        str(blk%f(index, at_position + 1))//', '//str(blk%f(index, at_position + 2))//' crossed a whole brick in one step')
+      if (any(abs(step) > 1)) call particle_error(mesh, solid, set, local, index, 'crossed a whole brick in one step')
       new_cell = 1 + local_cell(1) + mesh%brick_cells(1)*(local_cell(2) + mesh%brick_cells(2)*local_cell(3))
       if (all(step == 0)) then
         if (new_cell /= cell) call note_moved(blk, index, new_cell)

@@ -8,7 +8,7 @@ module scatter
   use particles, only: at_position, at_velocity, at_mass, at_volume, at_stress, at_viscosity
   implicit none
   private
-  public :: scatter_particles, add_momentum, sum_functions
+  public :: scatter_particles, add_momentum
 
   integer, parameter :: many = 24 !< particles from which loops over particles pay
   integer, parameter :: sxx = at_stress, syy = at_stress + 1, szz = at_stress + 2
@@ -240,24 +240,5 @@ contains
     total(:, 1) = [a1, a2, a3]
     total(:, 2) = [b1, b2, b3]
   end subroutine face_sums
-
-  !> Sum of each node's function over the particles of one cell.
-  pure subroutine sum_functions(frame, cell, capacity, n_field, f, first, last, total)
-    type(cell_frame), intent(in) :: frame
-    integer, intent(in) :: cell(3), capacity, n_field, first, last
-    real(wp), intent(in) :: f(capacity, n_field)
-    real(wp), intent(inout) :: total(8)
-    real(wp) :: wx(piece, 2), wy(piece, 2), wz(piece, 2)
-    integer :: start, n, q, l
-    do start = first, last, piece
-      n = min(piece, last - start + 1)
-      call weights(frame, n, cell, f(start, at_position), f(start, at_position + 1), f(start, at_position + 2), wx, wy, wz)
-      do q = 1, n
-        do l = 0, 7
-          total(l + 1) = total(l + 1) + wx(q, 1 + iand(l, 1))*wy(q, 1 + iand(l/2, 1))*wz(q, 1 + l/4)
-        end do
-      end do
-    end do
-  end subroutine sum_functions
 
 end module scatter

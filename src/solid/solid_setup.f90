@@ -7,9 +7,10 @@ module solid_setup
   use particle_fluid, only: fluid_energy, fluid_rest_pressure
   use particle_generation, only: piece_type, body_lattice, bar_lattice, generate_particles
   use particles, only: allocate_particles
-  use solid_material, only: make_solid_material, model_fluid
+  use solid_material, only: make_solid_material, claim_columns, model_fluid
   use solid_shapes, only: shape_type, box_shape, sphere_shape, cylinder_shape
-  use solid_state, only: solid_type, n_books, face_free, face_symmetry, face_clamped, clamp_box, n_cells_of
+  use solid_state, only: solid_type, n_books, face_free, face_symmetry, face_clamped, clamp_box, n_cells_of, scheme_musl, &
+    scheme_usl, scheme_usf
   use supports, only: find_supports
   implicit none
   private
@@ -28,7 +29,7 @@ contains
     solid%present = size(deck%body) > 0
     solid%cfl = deck%solid%cfl
     solid%gravity = merge(deck%solid%gravity, 0.0_wp, mesh%active)
-    solid%flip = deck%solid%flip
+    call choose_numerics(mesh, deck, solid)
     call choose_materials(deck, solid, used)
     call number_bodies(deck, solid)
     call set_supports(mesh, deck, solid)
@@ -42,8 +43,9 @@ contains
     type(mesh_type), intent(in) :: mesh
     type(solid_type), intent(inout) :: solid
     integer :: b, set
-    allocate (solid%block(solid%n_sets, mesh%n_local), solid%node(mesh%n_local), solid%force(mesh%n_local))
-    allocate (solid%mapped(mesh%n_local), solid%count(mesh%n_local), solid%support(mesh%n_local))
+    allocate (solid%block(solid%n_sets, mesh%n_local), solid%count(mesh%n_local), solid%support(mesh%n_local))
+    allocate (solid%node(solid%n_fields, mesh%n_local), solid%force(solid%n_fields, mesh%n_local))
+    allocate (solid%mapped(solid%n_fields, mesh%n_local))
     allocate (solid%limit(solid%n_sets, mesh%n_local))
     allocate (solid%books(n_books, mesh%n_local), source=0.0_wp)
     do b = 1, mesh%n_local
@@ -53,6 +55,26 @@ contains
     end do
     call find_supports(mesh, solid)
   end subroutine allocate_solid
+
+  !> Functions, transfer and scheme.
+  subroutine choose_numerics(mesh, deck, solid)
+    type(mesh_type), intent(in) :: mesh
+    type(deck_type), intent(in) :: deck
+    type(solid_type), intent(inout) :: solid
+    if (deck%solid%shape == 'quadratic') solid%order = 2
+    if (any(mesh%active .and. mesh%brick_cells < solid%order)) call fatal('mesh%brick: the quadratic shape needs bricks of two '// &
+      'cells or more', exit_bad_input)
+    solid%flip = deck%solid%flip
+    if (deck%solid%transfer == 'apic') solid%flip = 0
+    select case (deck%solid%scheme)
+    case ('usl')
+      solid%scheme = scheme_usl
+    case ('usf')
+      solid%scheme = scheme_usf
+    case default
+      solid%scheme = scheme_musl
+    end select
+  end subroutine choose_numerics
 
   !> One set per material that a body or a reinforcement names, in the order of their first use.
   subroutine choose_materials(deck, solid, used)
@@ -74,8 +96,11 @@ contains
     end do
     solid%n_sets = size(used)
     allocate (solid%material(size(used)))
+    allocate (solid%field_of_set(size(used)), source=1)
+    allocate (solid%at_affine(size(used)), source=0)
     do i = 1, size(used)
       solid%material(i) = make_solid_material(deck%material(used(i)), deck%solid%bulk_viscosity)
+      if (deck%solid%transfer == 'apic') call claim_columns(solid%material(i), 9, solid%at_affine(i))
     end do
   end subroutine choose_materials
 

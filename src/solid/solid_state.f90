@@ -1,6 +1,7 @@
 !> The state of the solid on this rank: particles by set (material) and brick, node fields, supports, books.
 module solid_state
   use blocks, only: block, allocate_nodes, allocate_cells
+  use halo, only: last_node
   use kinds, only: wp
   use mesh, only: mesh_type
   use particles, only: particle_block, sort_space
@@ -8,7 +9,11 @@ module solid_state
   use cell_functions, only: cell_frame
   implicit none
   private
-  public :: frame_of, n_cells_of, cell_coordinate, brick_particles, match_nodes
+  public :: frame_of, n_cells_of, cell_coordinate, brick_particles, field_particles, match_nodes
+
+  !> When the stress is updated: with the velocities that start the step (USF), that end it (USL), or that are mapped back from the
+  !> particles at its end (MUSL).
+  integer, parameter, public :: scheme_musl = 1, scheme_usl = 2, scheme_usf = 3
 
   !> What a face of the domain does to the solid.
   integer, parameter, public :: face_free = 0, face_symmetry = 1, face_clamped = 2
@@ -60,9 +65,11 @@ module solid_state
     character(64), allocatable :: body_name(:)
     integer :: n_particles = 0 !< in the scene at the start
     type(particle_block), allocatable :: block(:, :) !< (set, local brick)
-    type(block), allocatable :: node(:) !< mass and velocity of the nodes (4), by local brick; unallocated without particles
-    type(block), allocatable :: force(:) !< force, later velocity change of the nodes (3)
-    type(block), allocatable :: mapped(:) !< velocity mapped back from the moved particles (3)
+    integer :: n_fields = 1 !< velocity fields: sets of the same field stick together
+    integer, allocatable :: field_of_set(:)
+    type(block), allocatable :: node(:, :) !< (field, local brick) mass and velocity of nodes (4); unallocated: no particles
+    type(block), allocatable :: force(:, :) !< force, later velocity change of the nodes (3)
+    type(block), allocatable :: mapped(:, :) !< velocity that strains the particles (3)
     type(block), allocatable :: count(:) !< particles of all sets per cell (1, no ghosts)
     type(support_list), allocatable :: support(:) !< by local brick
     type(limit_type), allocatable :: limit(:, :) !< (set, local brick)
@@ -72,20 +79,32 @@ module solid_state
     type(clamp_box), allocatable :: clamp(:)
     real(wp) :: cfl = 0.5_wp
     real(wp) :: gravity(3) = 0
-    real(wp) :: flip = 1 !< part of FLIP, the rest is PIC
+    integer :: order = 1 !< of the functions: 1 linear, 2 quadratic; also the layers of nodes that neighbours share
+    integer :: scheme = scheme_musl
+    real(wp) :: flip = 1 !< part of FLIP, the rest is PIC; 0 with APIC
+    integer, allocatable :: at_affine(:) !< by set: first of the 9 columns of the affine matrix dv_i/dx_j, row by row; 0 without APIC
+    integer :: step = 0 !< of the scene, for messages
+    real(wp) :: time = 0 !< likewise
+    character(:), allocatable :: limiter !< what limits the time step, likewise
   end type solid_type
 
 contains
 
   !> Where the cells of a local brick lie.
-  pure function frame_of(mesh, local) result(frame)
+  pure function frame_of(mesh, order, local) result(frame)
     type(mesh_type), intent(in) :: mesh
+    integer, intent(in) :: order !< of the functions
     integer, intent(in) :: local
     type(cell_frame) :: frame
     frame%lower = mesh%lower
     frame%inverse = 1/mesh%spacing
     frame%offset = mesh%brick(mesh%local(local))%location*mesh%brick_cells
     frame%n = mesh%brick_cells
+    frame%order = order
+    frame%last = last_node(mesh, order)
+    frame%active = mesh%active
+    frame%at_low = mesh%brick(mesh%local(local))%at_low
+    frame%at_high = mesh%brick(mesh%local(local))%at_high
   end function frame_of
 
   pure integer function n_cells_of(mesh)
@@ -108,21 +127,35 @@ contains
     n = sum(solid%block(:, local)%n)
   end function brick_particles
 
+  !> Particles of all sets of one velocity field in a local brick.
+  pure integer function field_particles(solid, field, local) result(n)
+    type(solid_type), intent(in) :: solid
+    integer, intent(in) :: field, local
+    n = sum(solid%block(:, local)%n, mask=solid%field_of_set == field)
+  end function field_particles
+
   !> Node and count arrays exist exactly where there are particles.
   subroutine match_nodes(mesh, solid)
     type(mesh_type), intent(in) :: mesh
     type(solid_type), intent(inout) :: solid
     integer, parameter :: no_ghosts(3) = 0
-    integer :: b
+    integer :: b, field, last(3)
+    last = last_node(mesh, solid%order)
     do b = 1, mesh%n_local
-      if (brick_particles(solid, b) > 0) then
-        if (allocated(solid%node(b)%a)) cycle
-        call allocate_nodes(solid%node(b), mesh%brick_cells, 4)
-        call allocate_nodes(solid%force(b), mesh%brick_cells, 3)
-        call allocate_nodes(solid%mapped(b), mesh%brick_cells, 3)
+      do field = 1, solid%n_fields
+        if (field_particles(solid, field, b) > 0) then
+          if (allocated(solid%node(field, b)%a)) cycle
+          call allocate_nodes(solid%node(field, b), last, 4)
+          call allocate_nodes(solid%force(field, b), last, 3)
+          call allocate_nodes(solid%mapped(field, b), last, 3)
+        else if (allocated(solid%node(field, b)%a)) then
+          deallocate (solid%node(field, b)%a, solid%force(field, b)%a, solid%mapped(field, b)%a)
+        end if
+      end do
+      if (brick_particles(solid, b) == 0) then
+        if (allocated(solid%count(b)%a)) deallocate (solid%count(b)%a)
+      else if (.not. allocated(solid%count(b)%a)) then
         call allocate_cells(solid%count(b), mesh%brick_cells, no_ghosts, 1, 0.0_wp)
-      else if (allocated(solid%node(b)%a)) then
-        deallocate (solid%node(b)%a, solid%force(b)%a, solid%mapped(b)%a, solid%count(b)%a)
       end if
     end do
   end subroutine match_nodes

@@ -1,32 +1,26 @@
-!> One step of the material point method, MUSL: the stress follows from the velocity field of the moved particles.
+!> One step of the material point method. MUSL: the stress follows from the velocity field of the moved particles; USL and USF
+!> take the node velocities at the end and at the beginning of the step.
 !>
 !> Between steps the nodes always hold what the particles project on them: mass, velocity (supports applied) and this brick's
 !> part of the internal force. So the coupling may read node velocities at any time, and a step starts from the nodes.
 module solid_step
-  use blocks, only: block
-  use halo, only: halo_type, add
+  use blocks, only: block, allocate_nodes
+  use cell_functions, only: cell_frame, chunk
+  use halo, only: halo_type, add, last_node
   use kinds, only: wp
   use mesh, only: mesh_type
   use migration, only: route_particle, exchange_particles, outbox_type
+  use particle_checks, only: check_particles
   use particles, only: particle_block, cell_of_particle
-  use solid_state, only: solid_type, limit_type, frame_of, match_nodes, brick_particles, book_impulse, book_coupling_impulse, &
-    book_coupling_work, book_gravity_impulse, n_supports
+  use solid_load, only: loaded_cells, apply_load, book_load
+  use solid_state, only: solid_type, limit_type, frame_of, match_nodes, book_impulse, book_gravity_impulse, n_supports, &
+    scheme_musl, scheme_usf
   use stress_update, only: update_stress, signal_speeds
   use supports, only: hold_nodes, sum_held
-  use cell_functions, only: cell_frame, chunk
-  use gather, only: update_velocity, gather_motion
-  use scatter, only: scatter_particles, sum_functions
+  use transfer, only: particles_to_nodes, nodes_to_particles, move_particles
   implicit none
   private
   public :: project_solid, advance_solid
-
-  !> Cells of a brick that carry a coupling force.
-  type :: loaded_cells
-    integer :: n = 0
-    integer, allocatable :: cell(:, :) !< (3, n)
-    real(wp), allocatable :: force(:, :) !< (3, n) per particle
-    real(wp), allocatable :: weight(:, :) !< (8, n) sum of each node's function over the cell's particles
-  end type loaded_cells
 
 contains
 
@@ -36,34 +30,59 @@ contains
     type(mesh_type), intent(in) :: mesh
     type(halo_type), intent(inout) :: halo
     type(solid_type), intent(inout) :: solid
-    type(cell_frame) :: frame
-    integer :: b, set
+    integer :: b, set, field
     call match_nodes(mesh, solid)
     do b = 1, mesh%n_local
       solid%limit(:, b) = limit_type()
-      if (.not. allocated(solid%node(b)%a)) cycle
-      frame = frame_of(mesh, b)
-      solid%node(b)%a = 0
-      solid%force(b)%a = 0
+      if (.not. allocated(solid%count(b)%a)) cycle
       do set = 1, solid%n_sets
-        associate (blk => solid%block(set, b))
-          if (blk%n == 0) cycle
-          call scatter_particles(frame, blk%capacity, size(blk%f, 2), blk%f, blk%cell_start, solid%node(b)%a, solid%force(b)%a)
-          call find_limit(solid, set, blk, solid%limit(set, b))
-        end associate
+        if (solid%block(set, b)%n == 0) cycle
+        call check_particles(mesh, solid, set, b)
+        call find_limit(solid, set, solid%block(set, b), solid%limit(set, b))
       end do
       call count_particles(solid%block(:, b), mesh%brick_cells, solid%count(b))
-      solid%support(b)%total_mass = sum(solid%node(b)%a(:, 1, :, :))
-      solid%support(b)%mass = sum_held(solid%support(b), 1, 1, solid%node(b))
-      solid%support(b)%momentum = sum_held(solid%support(b), 1, 0, solid%node(b))
+      call scatter_brick(mesh, solid, b)
+      associate (support => solid%support(b))
+        support%total_mass = 0
+        support%mass = 0
+        support%momentum = 0
+        do field = 1, solid%n_fields
+          if (.not. allocated(solid%node(field, b)%a)) cycle
+          support%total_mass = support%total_mass + sum(solid%node(field, b)%a(:, 1, :, :))
+          support%mass = support%mass + sum_held(support, 1, 1, solid%node(field, b))
+          support%momentum = support%momentum + sum_held(support, 1, 0, solid%node(field, b))
+        end do
+      end associate
     end do
-    call add(mesh, halo, solid%node, 4)
-    do b = 1, mesh%n_local
-      if (.not. allocated(solid%node(b)%a)) cycle
-      call divide_by_mass(solid%node(b)%a(:, 1, :, :), solid%node(b)%a(:, 2:4, :, :))
-      call hold_nodes(solid%support(b), 1, solid%node(b))
+    do field = 1, solid%n_fields
+      call add(mesh, halo, solid%node(field, :), 4, solid%order)
+      do b = 1, mesh%n_local
+        if (.not. allocated(solid%node(field, b)%a)) cycle
+        call divide_by_mass(solid%node(field, b)%a(:, 1, :, :), solid%node(field, b)%a(:, 2:4, :, :))
+        call hold_nodes(solid%support(b), 1, solid%node(field, b))
+      end do
     end do
   end subroutine project_solid
+
+  !> This brick's part of mass, momentum and internal force.
+  subroutine scatter_brick(mesh, solid, b)
+    type(mesh_type), intent(in) :: mesh
+    type(solid_type), intent(inout) :: solid
+    integer, intent(in) :: b
+    type(cell_frame) :: frame
+    integer :: set, field
+    frame = frame_of(mesh, solid%order, b)
+    do field = 1, solid%n_fields
+      if (.not. allocated(solid%node(field, b)%a)) cycle
+      solid%node(field, b)%a = 0
+      solid%force(field, b)%a = 0
+    end do
+    do set = 1, solid%n_sets
+      field = solid%field_of_set(set)
+      if (solid%block(set, b)%n > 0) call particles_to_nodes(frame, solid%at_affine(set), solid%block(set, b), &
+        solid%node(field, b)%a, solid%force(field, b)%a)
+    end do
+  end subroutine scatter_brick
 
   !> Advances the solid by dt.
   !>
@@ -77,64 +96,133 @@ contains
     type(block), intent(in), optional :: load(:)
     type(loaded_cells) :: loaded(mesh%n_local)
     type(outbox_type) :: outbox
-    type(cell_frame) :: frame
-    integer :: b, set
+    integer :: b, set, field
+    if (solid%scheme == scheme_usf) call strain_first(mesh, solid, dt)
     do b = 1, mesh%n_local
-      if (.not. allocated(solid%node(b)%a)) cycle
+      if (.not. allocated(solid%count(b)%a)) cycle
       if (present(load)) then
         if (allocated(load(b)%a)) call apply_load(mesh, solid, b, load(b), loaded(b))
       end if
       call book_supports(solid, b, dt)
     end do
-    call add(mesh, halo, solid%force, 3)
-    do b = 1, mesh%n_local
-      if (.not. allocated(solid%node(b)%a)) cycle
-      call accelerate(dt, solid%gravity, solid%node(b)%a, solid%force(b)%a)
-      call hold_nodes(solid%support(b), 0, solid%force(b))
-      call add_change(solid%node(b)%a, solid%force(b)%a)
-      call book_load(solid, b, dt, loaded(b))
-      frame = frame_of(mesh, b)
-      solid%mapped(b)%a = 0
-      do set = 1, solid%n_sets
-        associate (blk => solid%block(set, b))
-          if (blk%n > 0) call update_velocity(frame, solid%flip, blk%capacity, size(blk%f, 2), blk%f, blk%cell_start, &
-            solid%force(b)%a, solid%node(b)%a, solid%mapped(b)%a)
-        end associate
+    do field = 1, solid%n_fields
+      call add(mesh, halo, solid%force(field, :), 3, solid%order)
+      do b = 1, mesh%n_local
+        if (.not. allocated(solid%node(field, b)%a)) cycle
+        call accelerate(dt, solid%gravity, solid%node(field, b)%a, solid%force(field, b)%a)
+        call hold_nodes(solid%support(b), 0, solid%force(field, b))
+        call add_change(solid%node(field, b)%a, solid%force(field, b)%a)
       end do
     end do
-    call add(mesh, halo, solid%mapped, 3)
     do b = 1, mesh%n_local
-      if (.not. allocated(solid%node(b)%a)) cycle
-      call divide_by_mass(solid%node(b)%a(:, 1, :, :), solid%mapped(b)%a)
-      call hold_nodes(solid%support(b), 0, solid%mapped(b))
+      if (.not. allocated(solid%count(b)%a)) cycle
+      call book_load(solid, b, dt, frame_of(mesh, solid%order, b), loaded(b))
+      call change_velocities(mesh, solid, b)
+    end do
+    call find_straining_velocity(mesh, halo, solid)
+    do b = 1, mesh%n_local
       do set = 1, solid%n_sets
-        if (solid%block(set, b)%n > 0) call move_and_strain(mesh, solid, dt, set, b, outbox)
+        if (solid%block(set, b)%n == 0) cycle
+        if (solid%scheme == scheme_usf) then
+          call move_and_strain(mesh, solid, dt, 0.0_wp, set, b, outbox)
+        else
+          call move_and_strain(mesh, solid, dt, dt, set, b, outbox)
+        end if
       end do
     end do
     call exchange_particles(mesh, solid, outbox)
     call project_solid(mesh, halo, solid)
   end subroutine advance_solid
 
-  !> Positions, stresses and states of one set of one brick; particles that changed cell are routed.
-  subroutine move_and_strain(mesh, solid, dt, set, b, outbox)
+  !> Velocities of the particles of one brick; with MUSL their momenta are mapped back.
+  subroutine change_velocities(mesh, solid, b)
+    type(mesh_type), intent(in) :: mesh
+    type(solid_type), intent(inout) :: solid
+    integer, intent(in) :: b
+    type(cell_frame) :: frame
+    integer :: set, field
+    frame = frame_of(mesh, solid%order, b)
+    do field = 1, solid%n_fields
+      if (allocated(solid%mapped(field, b)%a)) solid%mapped(field, b)%a = 0
+    end do
+    do set = 1, solid%n_sets
+      field = solid%field_of_set(set)
+      if (solid%block(set, b)%n > 0) call nodes_to_particles(frame, solid%flip, solid%at_affine(set), &
+        solid%scheme == scheme_musl, solid%block(set, b), solid%force(field, b)%a, solid%node(field, b)%a, &
+        solid%mapped(field, b)%a)
+    end do
+  end subroutine change_velocities
+
+  !> solid%mapped becomes the velocity that strains the particles: of the mapped momenta, or of the nodes.
+  subroutine find_straining_velocity(mesh, halo, solid)
+    type(mesh_type), intent(in) :: mesh
+    type(halo_type), intent(inout) :: halo
+    type(solid_type), intent(inout) :: solid
+    integer :: b, field
+    do field = 1, solid%n_fields
+      if (solid%scheme == scheme_musl) call add(mesh, halo, solid%mapped(field, :), 3, solid%order)
+      do b = 1, mesh%n_local
+        if (.not. allocated(solid%node(field, b)%a)) cycle
+        if (solid%scheme == scheme_musl) then
+          call divide_by_mass(solid%node(field, b)%a(:, 1, :, :), solid%mapped(field, b)%a)
+          call hold_nodes(solid%support(b), 0, solid%mapped(field, b))
+        else
+          solid%mapped(field, b)%a = solid%node(field, b)%a(:, 2:4, :, :)
+        end if
+      end do
+    end do
+  end subroutine find_straining_velocity
+
+  !> USF: stresses from the velocities that start the step, then the internal forces anew.
+  subroutine strain_first(mesh, solid, dt)
     type(mesh_type), intent(in) :: mesh
     type(solid_type), intent(inout) :: solid
     real(wp), intent(in) :: dt
+    type(outbox_type) :: outbox
+    type(cell_frame) :: frame
+    type(block) :: unused(solid%n_fields)
+    integer :: b, set, field
+    do b = 1, mesh%n_local
+      if (.not. allocated(solid%count(b)%a)) cycle
+      frame = frame_of(mesh, solid%order, b)
+      do field = 1, solid%n_fields
+        if (.not. allocated(solid%node(field, b)%a)) cycle
+        solid%mapped(field, b)%a = solid%node(field, b)%a(:, 2:4, :, :)
+        solid%force(field, b)%a = 0
+        call allocate_nodes(unused(field), last_node(mesh, solid%order), 4)
+      end do
+      do set = 1, solid%n_sets
+        if (solid%block(set, b)%n == 0) cycle
+        field = solid%field_of_set(set)
+        call move_and_strain(mesh, solid, 0.0_wp, dt, set, b, outbox)
+        call particles_to_nodes(frame, solid%at_affine(set), solid%block(set, b), unused(field)%a, solid%force(field, b)%a)
+      end do
+    end do
+  end subroutine strain_first
+
+  !> Positions, over dt, and stresses and states, over strain_dt, of one set of one brick; particles that changed cell are routed.
+  subroutine move_and_strain(mesh, solid, dt, strain_dt, set, b, outbox)
+    type(mesh_type), intent(in) :: mesh
+    type(solid_type), intent(inout) :: solid
+    real(wp), intent(in) :: dt, strain_dt
     integer, intent(in) :: set, b
     type(outbox_type), intent(inout) :: outbox
     type(cell_frame) :: frame
     real(wp) :: gradient(chunk, 9), length
-    integer :: first, last, cell, n_moved, moved(chunk), i
-    frame = frame_of(mesh, b)
+    integer :: first, last, cell, n_moved, moved(chunk), i, field
+    frame = frame_of(mesh, solid%order, b)
+    field = solid%field_of_set(set)
     length = minval(mesh%spacing, mesh%active)
     cell = 1
     do first = 1, solid%block(set, b)%n, chunk
       associate (blk => solid%block(set, b))
         last = min(first + chunk - 1, blk%n)
-        call gather_motion(frame, dt, blk%capacity, size(blk%f, 2), blk%f, blk%cell_start, first, last, cell, solid%node(b)%a, &
-          solid%mapped(b)%a, gradient, n_moved, moved)
-        call update_stress(solid%material(set), dt, length, last - first + 1, blk%capacity, size(blk%f, 2), blk%f, first, gradient)
+        call move_particles(frame, solid%at_affine(set), dt, strain_dt, blk, first, last, cell, solid%node(field, b)%a, &
+          solid%mapped(field, b)%a, gradient, n_moved, moved)
+        if (strain_dt > 0) call update_stress(solid%material(set), strain_dt, length, last - first + 1, blk%capacity, &
+          size(blk%f, 2), blk%f, first, gradient)
       end associate
+      if (.not. dt > 0) cycle
       do i = 1, n_moved
         call route_particle(mesh, solid, set, b, moved(i), cell_of_particle(solid%block(set, b), moved(i)), outbox)
       end do
@@ -230,92 +318,17 @@ contains
     node(:, 2:4, :, :) = node(:, 2:4, :, :) + change
   end subroutine add_change
 
-  !> Adds the coupling force to this brick's part of the node forces.
-  subroutine apply_load(mesh, solid, b, load, loaded)
-    type(mesh_type), intent(in) :: mesh
-    type(solid_type), intent(inout) :: solid
-    integer, intent(in) :: b
-    type(block), intent(in) :: load
-    type(loaded_cells), intent(inout) :: loaded
-    type(cell_frame) :: frame
-    real(wp) :: weight(8)
-    integer :: i, j, k, l, m, cell, set, n
-    frame = frame_of(mesh, b)
-    n = 0
-    do k = 1, mesh%brick_cells(3)
-      do j = 1, mesh%brick_cells(2)
-        do i = 1, mesh%brick_cells(1)
-          if (solid%count(b)%a(i, 1, j, k) > 0 .and. any(abs(load%a(i, 1:3, j, k)) > 0)) n = n + 1
-        end do
-      end do
-    end do
-    allocate (loaded%cell(3, n), loaded%force(3, n), loaded%weight(8, n))
-    loaded%n = n
-    n = 0
-    do k = 1, mesh%brick_cells(3)
-      do j = 1, mesh%brick_cells(2)
-        do i = 1, mesh%brick_cells(1)
-          if (.not. (solid%count(b)%a(i, 1, j, k) > 0 .and. any(abs(load%a(i, 1:3, j, k)) > 0))) cycle
-          cell = i + mesh%brick_cells(1)*(j - 1 + mesh%brick_cells(2)*(k - 1))
-          n = n + 1
-          weight = 0
-          do set = 1, solid%n_sets
-            associate (blk => solid%block(set, b))
-              if (blk%n > 0) call sum_functions(frame, [i, j, k], blk%capacity, size(blk%f, 2), blk%f, blk%cell_start(cell), &
-                blk%cell_start(cell + 1) - 1, weight)
-            end associate
-          end do
-          loaded%cell(:, n) = [i, j, k]
-          loaded%force(:, n) = load%a(i, 1:3, j, k)/solid%count(b)%a(i, 1, j, k)
-          loaded%weight(:, n) = weight
-          do l = 1, 8
-            do m = 1, 3
-              associate (at => solid%force(b)%a(i - 1 + iand(l - 1, 1), m, j - 1 + iand((l - 1)/2, 1), k - 1 + (l - 1)/4))
-                at = at + weight(l)*loaded%force(m, n)
-              end associate
-            end do
-          end do
-        end do
-      end do
-    end do
-  end subroutine apply_load
-
-  !> Impulse and work of the coupling force, with the mean node velocity of the step.
-  subroutine book_load(solid, b, dt, loaded)
-    type(solid_type), intent(inout) :: solid
-    integer, intent(in) :: b
-    real(wp), intent(in) :: dt
-    type(loaded_cells), intent(in) :: loaded
-    real(wp) :: work, impulse(3)
-    integer :: n, l, m, i, j, k
-    work = 0
-    impulse = 0
-    do n = 1, loaded%n
-      do l = 1, 8
-        i = loaded%cell(1, n) - 1 + iand(l - 1, 1)
-        j = loaded%cell(2, n) - 1 + iand((l - 1)/2, 1)
-        k = loaded%cell(3, n) - 1 + (l - 1)/4
-        do m = 1, 3
-          impulse(m) = impulse(m) + dt*loaded%weight(l, n)*loaded%force(m, n)
-          work = work + dt*loaded%weight(l, n)*loaded%force(m, n) &
-            *(solid%node(b)%a(i, m + 1, j, k) - 0.5_wp*solid%force(b)%a(i, m, j, k))
-        end do
-      end do
-    end do
-    associate (books => solid%books(:, b))
-      books(book_coupling_impulse:book_coupling_impulse + 2) = books(book_coupling_impulse:book_coupling_impulse + 2) + impulse
-      books(book_coupling_work) = books(book_coupling_work) + work
-    end associate
-  end subroutine book_load
-
   !> Impulses of the supports and of gravity in this step, from this brick's part of the node forces and masses.
   subroutine book_supports(solid, b, dt)
     type(solid_type), intent(inout) :: solid
     integer, intent(in) :: b
     real(wp), intent(in) :: dt
     real(wp) :: impulse(3, n_supports)
-    integer :: s
-    impulse = -dt*sum_held(solid%support(b), 0, 0, solid%force(b)) - (1 - solid%flip)*solid%support(b)%momentum
+    integer :: s, field
+    impulse = -(1 - solid%flip)*solid%support(b)%momentum
+    do field = 1, solid%n_fields
+      if (allocated(solid%force(field, b)%a)) impulse = impulse - dt*sum_held(solid%support(b), 0, 0, solid%force(field, b))
+    end do
     do s = 1, n_supports
       impulse(:, s) = impulse(:, s) - dt*solid%gravity*solid%support(b)%mass(:, s)
     end do

@@ -4,9 +4,11 @@
 !> symmetry plane. The impulse that this takes is booked by support.
 module supports
   use blocks, only: block
+  use cell_functions, only: cell_frame
   use kinds, only: wp
   use mesh, only: mesh_type
-  use solid_state, only: solid_type, support_list, held_type, n_supports, face_symmetry, face_clamped
+  use solid_state, only: solid_type, support_list, held_type, frame_of, n_supports, face_symmetry, face_clamped
+  use tensor_functions, only: control_point
   implicit none
   private
   public :: find_supports, hold_nodes, sum_held
@@ -18,15 +20,17 @@ contains
     type(mesh_type), intent(in) :: mesh
     type(solid_type), intent(inout) :: solid
     type(held_type), allocatable :: list(:)
+    type(cell_frame) :: frame
     integer :: b, i, j, k, d, n, support
     do b = 1, mesh%n_local
-      allocate (list(3*product(mesh%brick_cells + 1)))
+      frame = frame_of(mesh, solid%order, b)
+      allocate (list(3*product(frame%last + 1)))
       n = 0
-      do k = 0, mesh%brick_cells(3)
-        do j = 0, mesh%brick_cells(2)
-          do i = 0, mesh%brick_cells(1)
+      do k = 0, frame%last(3)
+        do j = 0, frame%last(2)
+          do i = 0, frame%last(1)
             do d = 1, 3
-              support = support_of(mesh, solid, b, [i, j, k], d)
+              support = support_of(frame, mesh%spacing, solid, [i, j, k], d)
               if (support == 0) cycle
               n = n + 1
               list(n) = held_type([i, j, k], d, support)
@@ -39,38 +43,37 @@ contains
     end do
   end subroutine find_supports
 
-  !> What holds one component of one node, 0 if nothing does.
-  pure integer function support_of(mesh, solid, b, node, component) result(support)
-    type(mesh_type), intent(in) :: mesh
+  !> What holds one component of one node, 0 if nothing does. A clamp holds the nodes whose control points it holds.
+  pure integer function support_of(frame, spacing, solid, node, component) result(support)
+    type(cell_frame), intent(in) :: frame
+    real(wp), intent(in) :: spacing(3)
     type(solid_type), intent(in) :: solid
-    integer, intent(in) :: b, node(3), component
+    integer, intent(in) :: node(3), component
     integer :: d, side, c
     logical :: on_face
     real(wp) :: x(3), margin(3)
     support = 0
-    associate (brick => mesh%brick(mesh%local(b)))
-      do d = 1, 3
-        do side = 1, 2
-          if (mesh%active(d)) then
-            if (side == 1) on_face = brick%at_low(d) .and. node(d) == 0
-            if (side == 2) on_face = brick%at_high(d) .and. node(d) == mesh%brick_cells(d)
-            if (.not. on_face) cycle
-            if (solid%face(side, d) == face_clamped .or. (solid%face(side, d) == face_symmetry .and. component == d)) then
-              support = 2*(d - 1) + side
-              return
-            end if
-          else if (component == d .and. node(d) == side - 1) then
+    do d = 1, 3
+      do side = 1, 2
+        if (frame%active(d)) then
+          if (side == 1) on_face = frame%at_low(d) .and. node(d) == 0
+          if (side == 2) on_face = frame%at_high(d) .and. node(d) == frame%last(d)
+          if (.not. on_face) cycle
+          if (solid%face(side, d) == face_clamped .or. (solid%face(side, d) == face_symmetry .and. component == d)) then
             support = 2*(d - 1) + side
             return
           end if
-        end do
+        else if (component == d .and. node(d) == side - 1) then
+          support = 2*(d - 1) + side
+          return
+        end if
       end do
-      x = mesh%lower + (brick%location*mesh%brick_cells + node)*mesh%spacing
-    end associate
-    margin = 1e-6_wp*mesh%spacing
+      x(d) = control_point(frame, d, node(d))
+    end do
+    margin = 1e-6_wp*spacing
     do c = 1, size(solid%clamp)
       if (.not. solid%clamp(c)%fixed(component)) cycle
-      if (any(mesh%active .and. (x < solid%clamp(c)%lower - margin .or. x > solid%clamp(c)%upper + margin))) cycle
+      if (any(frame%active .and. (x < solid%clamp(c)%lower - margin .or. x > solid%clamp(c)%upper + margin))) cycle
       support = n_supports
       return
     end do
