@@ -15,9 +15,15 @@ program solid_bench
   type(discs_type) :: discs
   type(bar_type) :: bar
   integer :: i
+  character(8) :: word
   call parallel_start()
   list = all_numerics()
   list = [list, numerics_type(flip=0.99_wp), numerics_type(flip=0.9_wp)]
+  call get_command_argument(1, word)
+  if (word /= '') then
+    read (word, *) i
+    list = list(i:i)
+  end if
   do i = 1, size(list)
     n = list(i)
     print '(/, a)', numerics_name(n)

@@ -19,6 +19,8 @@ contains
   subroutine choose_numerics(deck, numerics)
     type(deck_type), intent(inout) :: deck
     type(numerics_type), intent(in) :: numerics
+    deck%solid%shape = numerics%shape
+    deck%solid%transfer = numerics%transfer
     deck%solid%scheme = numerics%scheme
     deck%solid%flip = numerics%flip
   end subroutine choose_numerics
@@ -38,7 +40,10 @@ contains
   !> Everything that the code offers.
   function all_numerics() result(list)
     type(numerics_type), allocatable :: list(:)
-    list = [numerics_type()]
+    character(16), parameter :: shape(2) = [character(16) :: 'linear', 'quadratic']
+    character(16), parameter :: transfer(2) = [character(16) :: 'flip', 'apic'], scheme(3) = [character(16) :: 'musl', 'usl', 'usf']
+    integer :: i, j, k
+    list = [(((numerics_type(shape(i), transfer(j), scheme(k)), k=1, 3), j=1, 2), i=1, 2)]
   end function all_numerics
 
 end module solid_numerics
