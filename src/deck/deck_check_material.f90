@@ -12,6 +12,9 @@ module deck_check_material
   public :: check_material, check_name
 
   integer, parameter :: key_length = 24
+  character(key_length), parameter :: damage_keys(4) = [character(key_length) :: 'jc_d1', 'jc_d2', 'jc_d3', 'jc_d4']
+  character(key_length), parameter :: damaged_metals(4) = [character(key_length) :: 'perfect_plasticity', 'linear_hardening', &
+    'johnson_cook', 'simplified_johnson_cook']
 
 contains
 
@@ -35,6 +38,9 @@ contains
     if (material%model == 'hjc') call check_hjc(material, table, problems, warnings)
     if (material%eos == 'cochran_chan') call check_cochran_chan(material, table, problems)
     if (material%eos == 'jwl') call check_afterburn(material, table, problems, warnings)
+    if (material%model == 'rht') call check_rht(material, table, problems)
+    if (material%model == 'drucker_prager' .and. material%dilatancy_angle > material%friction_angle) &
+      call problems%add_at_key(table, 'dilatancy_angle', 'must not lie above friction_angle: shearing would make energy')
     if (material%model == 'johnson_cook' .and. material%melt_temperature <= material%reference_temperature) &
       call problems%add_at_key(table, 'melt_temperature', 'must lie above reference_temperature')
     if (material%model == 'linear_hardening' .and. material%ultimate_stress > 0.0_wp .and. &
@@ -63,11 +69,33 @@ contains
     if (material%model == 'linear_hardening' .and. .not. material%hardening_modulus > unset .and. &
         material%yield_stress > unset .and. material%ultimate_stress > 0.0_wp .and. material%failure_strain > 0.0_wp) &
       material%hardening_modulus = max(0.0_wp, material%ultimate_stress - material%yield_stress)/material%failure_strain
+    material%per_second = from_si(1.0_wp, 0, 0, -1, system)
+    material%ten_megapascal = from_si(1e7_wp, 1, -1, -2, system)
+    if (material%model == 'rht' .and. material%rht_fc > unset) call fill_rht(material, system)
     if (material%failure /= '') return
     material%failure = 'none'
     if (material%failure_strain > 0.0_wp) material%failure = 'strain'
-    if (material%model == 'hjc') material%failure = 'damage'
+    if (material%jc_d1 > unset .or. material%model == 'hjc' .or. material%model == 'rht') material%failure = 'damage'
+    if (material%fracture_energy > 0.0_wp .and. (material%model == 'hjc' .or. material%model == 'rht')) &
+      material%failure = 'fracture_energy'
   end subroutine fill_material
+
+  !> What the strength gives (exponents of the rate, pore crushing at 2/3 fc) and what all concretes share (curve of the solid).
+  subroutine fill_rht(material, system)
+    type(material_group), intent(inout) :: material
+    character(*), intent(in) :: system
+    real(wp) :: gpa, fc
+    gpa = from_si(1e9_wp, 1, -1, -2, system)
+    fc = 10*material%rht_fc/material%ten_megapascal
+    if (.not. material%rht_beta_c > unset) material%rht_beta_c = 4/(20 + 3*fc)
+    if (.not. material%rht_beta_t > unset) material%rht_beta_t = 2/(20 + fc)
+    if (.not. material%rht_p_crush > unset) material%rht_p_crush = material%rht_fc*2/3
+    if (.not. material%rht_p_lock > unset) material%rht_p_lock = 6*gpa
+    if (.not. material%rht_a1 > unset) material%rht_a1 = 35.27_wp*gpa
+    if (.not. material%rht_a2 > unset) material%rht_a2 = 39.58_wp*gpa
+    if (.not. material%rht_a3 > unset) material%rht_a3 = 9.04_wp*gpa
+    if (.not. material%rht_t1 > unset) material%rht_t1 = material%rht_a1
+  end subroutine fill_rht
 
   logical function has_all_constants(material, table, problems)
     type(material_group), intent(in) :: material
@@ -75,7 +103,7 @@ contains
     type(problem_list), intent(inout) :: problems
     character(key_length), allocatable :: missing(:)
     character(:), allocatable :: hint
-    allocate (missing, source=unset_keys(needs_of_eos(material%eos), table))
+    missing = unset_keys(needs_of_eos(material%eos), table)
     has_all_constants = size(missing) == 0
     if (size(missing) > 0) call problems%add_at_key(table, 'eos', 'eos '''//trim(material%eos)//''' also needs '// &
       join(missing, ', '))
@@ -94,9 +122,9 @@ contains
 
   ! Those of the names whose number is unset though the deck did not try to give it.
   pure function unset_keys(names, table) result(missing)
-    character(*), intent(in) :: names(:)
+    character(key_length), intent(in) :: names(:)
     type(key_table), intent(in) :: table
-    character(len(names)), allocatable :: missing(:)
+    character(key_length), allocatable :: missing(:)
     logical :: absent(size(names))
     integer :: i
     do i = 1, size(names)
@@ -144,6 +172,10 @@ contains
     case ('johnson_cook')
       names = [character(key_length) :: names, 'jc_a', 'jc_b', 'jc_n', 'jc_c', 'jc_m', 'melt_temperature', &
         'reference_temperature', 'specific_heat']
+    case ('rht')
+      names = [character(key_length) :: names, 'rht_fc']
+    case ('drucker_prager')
+      names = [character(key_length) :: names, 'friction_angle', 'cohesion']
     case ('hjc')
       names = [character(key_length) :: names, 'hjc_a', 'hjc_b', 'hjc_n', 'hjc_c', 'hjc_fc', 'hjc_smax', 'hjc_t', &
         'hjc_d1', 'hjc_d2', 'hjc_ef_min', 'hjc_p_crush', 'hjc_mu_crush', 'hjc_k1', 'hjc_k2', 'hjc_k3', 'hjc_p_lock', &
@@ -162,14 +194,25 @@ contains
     if (material%model /= '') names = [character(key_length) :: names, 'bulk_viscosity_linear', 'bulk_viscosity_quadratic', &
       'failure', 'failure_strain']
     select case (material%model)
+    case ('elastic')
+      names = [character(key_length) :: names, 'tensile_limit']
+    case ('perfect_plasticity')
+      names = [character(key_length) :: names, damage_keys, 'tensile_limit']
     case ('linear_hardening')
-      names = [character(key_length) :: names, 'ultimate_stress']
+      names = [character(key_length) :: names, damage_keys, 'tensile_limit', 'ultimate_stress']
     case ('simplified_johnson_cook')
-      names = [character(key_length) :: names, 'reference_strain_rate']
+      names = [character(key_length) :: names, damage_keys, 'tensile_limit', 'reference_strain_rate']
     case ('johnson_cook')
-      names = [character(key_length) :: names, 'taylor_quinney', 'reference_strain_rate']
+      names = [character(key_length) :: names, damage_keys, 'jc_d5', 'tensile_limit', 'taylor_quinney', 'reference_strain_rate']
+    case ('drucker_prager')
+      names = [character(key_length) :: names, 'dilatancy_angle', 'tensile_limit']
     case ('hjc')
-      names = [character(key_length) :: names, 'hjc_lock_strain', 'reference_strain_rate']
+      names = [character(key_length) :: names, 'hjc_lock_strain', 'reference_strain_rate', 'fracture_energy']
+    case ('rht')
+      names = [character(key_length) :: names, 'fracture_energy', 'rht_fs', 'rht_ft', 'rht_a', 'rht_n', 'rht_q0', 'rht_b', &
+        'rht_gc', 'rht_gt', 'rht_xi', 'rht_af', 'rht_nf', 'rht_d1', 'rht_d2', 'rht_ef_min', 'rht_beta_c', 'rht_beta_t', &
+        'rht_p_crush', 'rht_p_lock', 'rht_alpha', 'rht_n_compaction', 'rht_a1', 'rht_a2', 'rht_a3', 'rht_t1', 'rht_t2', 'rht_b0', &
+        'rht_b1']
     end select
   end function options_of
 
@@ -203,12 +246,40 @@ contains
     type(material_group), intent(in) :: material
     type(key_table), intent(in) :: table
     type(problem_list), intent(inout) :: problems
+    character(key_length), allocatable :: missing(:)
     if (material%failure == 'strain' .and. .not. material%failure_strain > 0.0_wp) then
       call problems%add_at_key(table, 'failure', 'failure = ''strain'' also needs failure_strain')
-    else if (material%failure == 'damage' .and. material%model /= 'hjc') then
+    else if (material%failure == 'fracture_energy') then
+      if (material%model /= 'hjc' .and. material%model /= 'rht') then
+        call problems%add_at_key(table, 'failure', 'fracture_energy is for the models hjc and rht')
+      else if (.not. material%fracture_energy > 0.0_wp) then
+        call problems%add_at_key(table, 'failure', 'failure = ''fracture_energy'' also needs fracture_energy')
+      end if
+    else if (material%failure == 'damage' .and. any(material%model == damaged_metals)) then
+      missing = unset_keys(damage_keys, table)
+      if (size(missing) > 0) call problems%add_at_key(table, 'failure', &
+        'failure = ''damage'' of a metal also needs '//join(missing, ', '))
+    else if (material%failure == 'damage' .and. material%model /= 'hjc' .and. material%model /= 'rht') then
       call problems%add_at_key(table, 'failure', 'model '''//trim(material%model)//''' has no damage (allowed: strain, none)')
     end if
+    if (material%tensile_rate_factor /= 'none' .and. material%model /= 'hjc') &
+      call problems%add_at_key(table, 'tensile_rate_factor', 'is for the model hjc (rht has rates of its own)')
   end subroutine check_failure
+
+  subroutine check_rht(material, table, problems)
+    type(material_group), intent(in) :: material
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems
+    real(wp) :: c, section
+    if (material%rht_p_lock <= material%rht_p_crush) &
+      call problems%add_at_key(table, 'rht_p_lock', 'must lie above rht_p_crush')
+    ! the strength must vanish at a tensile pressure, which must lie beyond that of uniaxial tension
+    c = 3*(1 - material%rht_q0**2)
+    section = (sqrt(c*(1 - material%rht_q0**2)) + (2*material%rht_q0 - 1)*sqrt(max(c + 5*material%rht_q0**2 - 4*material%rht_q0, &
+      0.0_wp)))/(c + (1 - 2*material%rht_q0)**2) ! between the meridians, at 30 degrees
+    if (section*material%rht_ft >= material%rht_q0*material%rht_fs) call problems%add_at_key(table, 'rht_ft', &
+      'must be less than '//str(material%rht_q0*material%rht_fs/section, 3)//', or the strength does not vanish in tension')
+  end subroutine check_rht
 
   ! Sound at rest: r c**2 = A1 (E1 - 1 - g) - A2 (E2 - 1 - g) at V = 1 and p = 0. Thinned out the second term is left alone.
   subroutine check_cochran_chan(material, table, problems)

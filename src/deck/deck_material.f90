@@ -3,16 +3,19 @@ module deck_material
   use kinds, only: wp
   use constants, only: unset
   use deck_keys, only: key_table, word_length
-  use units, only: of_density, of_energy_per_mass, of_pressure, of_rate, of_specific_heat, of_temperature, of_time, &
-    of_velocity
+  use units, only: of_density, of_energy_per_area, of_energy_per_mass, of_pressure, of_rate, of_specific_heat, of_temperature, &
+    of_time, of_velocity
   implicit none
   private
   public :: material_keys
 
   character(word_length), parameter, public :: eos_names(7) = &
     [character(word_length) :: '', 'ideal_gas', 'stiffened_gas', 'jwl', 'cochran_chan', 'shock', 'polynomial']
-  character(word_length), parameter, public :: model_names(8) = [character(word_length) :: '', 'elastic', &
-    'perfect_plasticity', 'linear_hardening', 'johnson_cook', 'simplified_johnson_cook', 'hjc', 'fluid']
+  character(word_length), parameter, public :: solid_eos_names(3) = & !< from which a metal can take its pressure
+    [character(word_length) :: 'cochran_chan', 'shock', 'polynomial']
+  character(word_length), parameter, public :: model_names(11) = [character(word_length) :: '', 'elastic', &
+    'perfect_plasticity', 'linear_hardening', 'johnson_cook', 'simplified_johnson_cook', 'hjc', 'rht', 'drucker_prager', &
+    'neo_hookean', 'fluid']
 
   !> Real constants that neither the deck nor the library gives are `unset`.
   type, public :: material_group
@@ -38,18 +41,35 @@ module deck_material
     real(wp) :: yield_stress = unset, hardening_modulus = unset
     real(wp) :: ultimate_stress = 0 !< the yield stress rises no further, 0: no limit
     real(wp) :: failure_strain = 0 !< plastic strain, 0: none
+    real(wp) :: tensile_limit = 0 !< largest tensile mean stress, 0: none
+    character(word_length) :: tensile_rule = 'failure' !< what happens there: 'failure' or 'limit'
     ! Johnson-Cook
     real(wp) :: jc_a = unset, jc_b = unset, jc_n = unset, jc_c = unset, jc_m = unset
     real(wp) :: melt_temperature = unset, reference_temperature = unset, specific_heat = unset
     real(wp) :: taylor_quinney = 0.9_wp !< part of the plastic work that heats
     real(wp) :: reference_strain_rate = unset !< set to 1 per second by the checks
+    real(wp) :: jc_d1 = unset, jc_d2 = unset, jc_d3 = unset, jc_d4 = unset, jc_d5 = 0 !< failure strain
+    ! Drucker-Prager
+    real(wp) :: friction_angle = unset, cohesion = unset, dilatancy_angle = 0 !< angles in degrees
+    ! concrete
+    character(word_length) :: tensile_rate_factor = 'none' !< 'none', 'ceb' or 'malvar'
+    real(wp) :: fracture_energy = 0 !< per area of a crack
     ! Holmquist-Johnson-Cook concrete
     real(wp) :: hjc_a = unset, hjc_b = unset, hjc_n = unset, hjc_c = unset, hjc_fc = unset, hjc_smax = unset
     real(wp) :: hjc_t = unset, hjc_d1 = unset, hjc_d2 = unset, hjc_ef_min = unset
     real(wp) :: hjc_p_crush = unset, hjc_mu_crush = unset, hjc_k1 = unset, hjc_k2 = unset, hjc_k3 = unset
     real(wp) :: hjc_p_lock = unset, hjc_mu_lock = unset
     character(word_length) :: hjc_lock_strain = 'lock' !< what hjc_mu_lock is: 'lock' or 'plastic_lock'
-    character(word_length) :: failure = '' !< set by the checks to 'damage', 'strain' or 'none'
+    ! Riedel-Hiermaier-Thoma concrete
+    real(wp) :: rht_fc = unset !< all others follow where they are not given
+    real(wp) :: rht_fs = 0.18_wp, rht_ft = 0.1_wp, rht_a = 1.6_wp, rht_n = 0.61_wp, rht_q0 = 0.6805_wp, rht_b = 0.0105_wp
+    real(wp) :: rht_gc = 0.53_wp, rht_gt = 0.7_wp, rht_xi = 0.5_wp, rht_af = 1.6_wp, rht_nf = 0.61_wp
+    real(wp) :: rht_d1 = 0.04_wp, rht_d2 = 1, rht_ef_min = 0.01_wp
+    real(wp) :: rht_beta_c = unset, rht_beta_t = unset, rht_p_crush = unset, rht_p_lock = unset
+    real(wp) :: rht_alpha = 1.1884_wp, rht_n_compaction = 3
+    real(wp) :: rht_a1 = unset, rht_a2 = unset, rht_a3 = unset, rht_t1 = unset, rht_t2 = 0, rht_b0 = 1.22_wp, rht_b1 = 1.22_wp
+    character(word_length) :: failure = '' !< set by the checks to 'damage', 'strain', 'fracture_energy' or 'none'
+    real(wp) :: per_second = 1, ten_megapascal = 1e7_wp !< 1/s and 10 MPa in the units of the deck, set by the checks; no keys
     real(wp) :: bulk_viscosity_linear = 0.06_wp, bulk_viscosity_quadratic = 1.5_wp
     integer :: line = 0
   end type material_group
@@ -94,6 +114,8 @@ contains
     call table%add('hardening_modulus', group%hardening_modulus, of_pressure, at_least=none, usual=[0.0_wp, 1e11_wp])
     call table%add('ultimate_stress', group%ultimate_stress, of_pressure, at_least=none, usual=[0.0_wp, 1e10_wp])
     call table%add('failure_strain', group%failure_strain, at_least=none)
+    call table%add('tensile_limit', group%tensile_limit, of_pressure, at_least=none, usual=[0.0_wp, 1e10_wp])
+    call table%add('tensile_rule', group%tensile_rule, [character(word_length) :: 'failure', 'limit'])
     call table%add('jc_a', group%jc_a, of_pressure, more_than=none, usual=usual_strength)
     call table%add('jc_b', group%jc_b, of_pressure, at_least=none, usual=[0.0_wp, 1e11_wp])
     call table%add('jc_n', group%jc_n, more_than=none, at_most=2.0_wp)
@@ -105,6 +127,16 @@ contains
     call table%add('specific_heat', group%specific_heat, of_specific_heat, more_than=none, usual=[50.0_wp, 2e4_wp])
     call table%add('taylor_quinney', group%taylor_quinney, at_least=none, at_most=1.0_wp)
     call table%add('reference_strain_rate', group%reference_strain_rate, of_rate, more_than=none, usual=[1e-6_wp, 1e6_wp])
+    call table%add('jc_d1', group%jc_d1, at_least=-10.0_wp, at_most=10.0_wp)
+    call table%add('jc_d2', group%jc_d2, at_least=-100.0_wp, at_most=100.0_wp)
+    call table%add('jc_d3', group%jc_d3, at_least=-20.0_wp, at_most=20.0_wp)
+    call table%add('jc_d4', group%jc_d4, at_least=-1.0_wp, at_most=1.0_wp)
+    call table%add('jc_d5', group%jc_d5, at_least=-1.0_wp, at_most=20.0_wp)
+    call table%add('friction_angle', group%friction_angle, at_least=none, less_than=90.0_wp)
+    call table%add('cohesion', group%cohesion, of_pressure, at_least=none, usual=[0.0_wp, 1e9_wp])
+    call table%add('dilatancy_angle', group%dilatancy_angle, at_least=none, less_than=90.0_wp)
+    call table%add('tensile_rate_factor', group%tensile_rate_factor, [character(word_length) :: 'none', 'ceb', 'malvar'])
+    call table%add('fracture_energy', group%fracture_energy, of_energy_per_area, at_least=none, usual=[1.0_wp, 1e6_wp])
     call table%add('hjc_a', group%hjc_a, at_least=none)
     call table%add('hjc_b', group%hjc_b, at_least=none)
     call table%add('hjc_n', group%hjc_n, more_than=none)
@@ -123,7 +155,35 @@ contains
     call table%add('hjc_p_lock', group%hjc_p_lock, of_pressure, more_than=none, usual=[1e7_wp, 1e11_wp])
     call table%add('hjc_mu_lock', group%hjc_mu_lock, more_than=none, less_than=1.0_wp)
     call table%add('hjc_lock_strain', group%hjc_lock_strain, [character(word_length) :: 'lock', 'plastic_lock'])
-    call table%add('failure', group%failure, [character(word_length) :: '', 'damage', 'strain', 'none'])
+    call table%add('rht_fc', group%rht_fc, of_pressure, more_than=none, usual=[1e6_wp, 1e9_wp])
+    call table%add('rht_fs', group%rht_fs, more_than=none, less_than=1.0_wp)
+    call table%add('rht_ft', group%rht_ft, more_than=none, less_than=1.0_wp)
+    call table%add('rht_a', group%rht_a, more_than=none)
+    call table%add('rht_n', group%rht_n, more_than=none, at_most=1.0_wp)
+    call table%add('rht_q0', group%rht_q0, at_least=0.51_wp, at_most=1.0_wp)
+    call table%add('rht_b', group%rht_b, at_least=none)
+    call table%add('rht_gc', group%rht_gc, more_than=none, at_most=1.0_wp)
+    call table%add('rht_gt', group%rht_gt, more_than=none, at_most=1.0_wp)
+    call table%add('rht_xi', group%rht_xi, more_than=none)
+    call table%add('rht_af', group%rht_af, at_least=none)
+    call table%add('rht_nf', group%rht_nf, more_than=none)
+    call table%add('rht_d1', group%rht_d1, more_than=none)
+    call table%add('rht_d2', group%rht_d2, more_than=none)
+    call table%add('rht_ef_min', group%rht_ef_min, more_than=none, at_most=1.0_wp)
+    call table%add('rht_beta_c', group%rht_beta_c, at_least=none, at_most=1.0_wp)
+    call table%add('rht_beta_t', group%rht_beta_t, at_least=none, at_most=1.0_wp)
+    call table%add('rht_p_crush', group%rht_p_crush, of_pressure, more_than=none, usual=[1e5_wp, 1e10_wp])
+    call table%add('rht_p_lock', group%rht_p_lock, of_pressure, more_than=none, usual=[1e7_wp, 1e11_wp])
+    call table%add('rht_alpha', group%rht_alpha, more_than=1.0_wp, at_most=3.0_wp)
+    call table%add('rht_n_compaction', group%rht_n_compaction, at_least=1.0_wp, at_most=10.0_wp)
+    call table%add('rht_a1', group%rht_a1, of_pressure, more_than=none, usual=[1e8_wp, 1e12_wp])
+    call table%add('rht_a2', group%rht_a2, of_pressure)
+    call table%add('rht_a3', group%rht_a3, of_pressure)
+    call table%add('rht_t1', group%rht_t1, of_pressure, more_than=none, usual=[1e8_wp, 1e12_wp])
+    call table%add('rht_t2', group%rht_t2, of_pressure)
+    call table%add('rht_b0', group%rht_b0, at_least=none, at_most=10.0_wp)
+    call table%add('rht_b1', group%rht_b1, at_least=none, at_most=10.0_wp)
+    call table%add('failure', group%failure, [character(word_length) :: '', 'damage', 'strain', 'fracture_energy', 'none'])
     call table%add('bulk_viscosity_linear', group%bulk_viscosity_linear, at_least=none, at_most=2.0_wp)
     call table%add('bulk_viscosity_quadratic', group%bulk_viscosity_quadratic, at_least=none, at_most=10.0_wp)
   end subroutine material_keys

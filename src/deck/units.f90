@@ -21,6 +21,7 @@ module units
   integer, parameter, public :: of_pressure(4) = [1, -1, -2, 0] !< also energy per volume
   integer, parameter, public :: of_energy(4) = [1, 2, -2, 0]
   integer, parameter, public :: of_energy_per_mass(4) = [0, 2, -2, 0]
+  integer, parameter, public :: of_energy_per_area(4) = [1, 0, -2, 0]
   integer, parameter, public :: of_specific_heat(4) = [0, 2, -2, -1]
   integer, parameter, public :: of_momentum(4) = [1, 1, -1, 0]
   integer, parameter, public :: of_force(4) = [1, 1, -2, 0]
@@ -32,6 +33,7 @@ module units
     character(16) :: length = 'm', time = 's', mass = 'kg', temperature = 'K', velocity = 'm/s', acceleration = 'm/s^2'
     character(16) :: density = 'kg/m^3', pressure = 'Pa', energy = 'J', energy_per_mass = 'J/kg'
     character(16) :: momentum = 'N s', force = 'N', impulse = 'Pa s', specific_heat = 'J/(kg K)', rate = '1/s'
+    character(16) :: energy_per_area = 'J/m^2'
   end type unit_labels_type
 
 contains
@@ -49,10 +51,11 @@ contains
     select case (system)
     case ('mm-ms-g-MPa')
       labels = unit_labels_type('', 'mm', 'ms', 'g', 'K', 'mm/ms', 'mm/ms^2', 'g/mm^3', 'MPa', 'mJ', 'mJ/g', &
-        'g mm/ms', 'N', 'MPa ms', 'mJ/(g K)', '1/ms')
+        'g mm/ms', 'N', 'MPa ms', 'mJ/(g K)', '1/ms', 'mJ/mm^2')
     case ('cm-us-g-Mbar')
       labels = unit_labels_type('', 'cm', 'us', 'g', 'K', 'cm/us', 'cm/us^2', 'g/cm^3', 'Mbar', 'Mbar cm^3', 'Mbar cm^3/g', &
-        'g cm/us', 'Mbar cm^2', 'Mbar us', 'Mbar cm^3/(g K)', '1/us')
+        'g cm/us', 'Mbar cm^2', 'Mbar us', 'Mbar cm^3/(g K)', '1/us', &
+        'Mbar cm')
     case ('none')
       labels = unit_labels_type('', '-', '-', '-', '-', '-', '-', '-', '-', '-', '-', '-', '-', '-', '-', '-')
     end select
@@ -78,6 +81,7 @@ contains
     if (all(dimension == of_pressure)) label = labels%pressure
     if (all(dimension == of_energy)) label = labels%energy
     if (all(dimension == of_energy_per_mass)) label = labels%energy_per_mass
+    if (all(dimension == of_energy_per_area)) label = labels%energy_per_area
     if (all(dimension == of_specific_heat)) label = labels%specific_heat
     if (all(dimension == of_momentum)) label = labels%momentum
     if (all(dimension == of_force)) label = labels%force
