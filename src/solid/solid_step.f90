@@ -9,6 +9,7 @@ module solid_step
   use halo, only: halo_type, add, last_node
   use kinds, only: wp
   use mesh, only: mesh_type
+  use middle_gradient, only: center_gradient
   use migration, only: route_particle, exchange_particles, outbox_type
   use particle_checks, only: check_particles
   use particles, only: particle_block, cell_of_particle
@@ -219,8 +220,11 @@ contains
         last = min(first + chunk - 1, blk%n)
         call move_particles(frame, solid%at_affine(set), dt, strain_dt, blk, first, last, cell, solid%node(field, b)%a, &
           solid%mapped(field, b)%a, gradient, n_moved, moved)
-        if (strain_dt > 0) call update_stress(solid%material(set), strain_dt, length, last - first + 1, blk%capacity, &
-          size(blk%f, 2), blk%f, first, gradient)
+        if (strain_dt > 0) then
+          call center_gradient(last - first + 1, solid%scheme /= scheme_usf, gradient)
+          call update_stress(solid%material(set), strain_dt, length, last - first + 1, blk%capacity, size(blk%f, 2), blk%f, first, &
+            gradient)
+        end if
       end associate
       if (.not. dt > 0) cycle
       do i = 1, n_moved

@@ -150,7 +150,7 @@ contains
     type(manufactured_type), intent(in) :: problem
     real(wp), intent(in) :: x(2), time
     real(wp) :: force(2)
-    real(wp) :: u(2), f(2), slope(2), jacobian, lame, r, a(0:2), g(0:2), gamma, gamma_slope, radial, around, angle
+    real(wp) :: u(2), f(2), slope(2), jacobian, other, r, a(0:2), g(0:2), gamma, gamma_slope, radial, around, angle
     integer :: d
     if (problem%motion == 'vortex') then
       r = norm2(x)
@@ -159,8 +159,8 @@ contains
       gamma = r*a(1)*g(0)
       gamma_slope = (a(1) + r*a(2))*g(0)
       if (problem%law == 'neo_hookean') then
-        ! stress: rr 0, tt G gamma^2, rt G gamma
-        radial = -shear*gamma**2/r
+        ! stress: rr -G gamma^2/3, tt 2 G gamma^2/3, rt G gamma
+        radial = -shear*(2*gamma*gamma_slope/3 + gamma**2/r)
         around = shear*(gamma_slope + 2*gamma/r)
       else
         ! rate of Jaumann in simple shear: rr -G (1 - cos gamma), tt the opposite, rt G sin gamma
@@ -176,13 +176,14 @@ contains
       f = 1 + 2*pi*problem%amplitude*[1, -1]*cos(2*pi*x)*sin(pi*wave*time)
       slope = -4*pi**2*u
       jacobian = f(1)*f(2)
-      lame = bulk - 2*shear/3
       do d = 1, 2
         if (problem%law == 'neo_hookean') then
-          ! first Piola-Kirchhoff stress: lambda ln J/F + G (F - 1/F)
-          force(d) = slope(d)*(lame*(1 - log(jacobian))/f(d)**2 + shear*(1 + 1/f(d)**2))
+          ! Cauchy stress: G J**(-5/3) (2 F^2 - other^2 - 1)/3 + K/2 (J - 1/J), times the other F
+          other = f(3 - d)
+          force(d) = slope(d)*other*(4*shear*f(d)/3*jacobian**(-5/3.0_wp) + other*(0.5_wp*bulk*(1 + 1/jacobian**2) &
+            - 5*shear/9*jacobian**(-8/3.0_wp)*(2*f(d)**2 - other**2 - 1)))
         else
-          ! Cauchy stress: K (1 - 1/J) + 2 G (ln F - ln J/3), times J/F
+          ! Cauchy stress: K (1 - 1/J) + 2 G (ln F - ln J/3), times the other F
           force(d) = slope(d)*(bulk + 4*shear/3*jacobian)/f(d)**2
         end if
       end do

@@ -97,14 +97,14 @@ contains
     end do
   end function mode
 
-  !> Speed of a smooth pulse in a bar in one dimension over the speed of sound, less 1. The pulse is 48 cells wide and travels 100;
+  !> Speed of a smooth pulse in a bar in one dimension over the speed of sound, less 1. The pulse is 64 cells wide and travels 100;
   !> its place is the mean of the squared velocity.
   real(wp) function run_pulse(numerics)
     type(numerics_type), intent(in) :: numerics
     type(solid_scene) :: scene
     type(solid_limit_type) :: limit
     real(wp) :: c, time, x, w, place(2), strain
-    real(wp), parameter :: width = 48, middle = 40, speed = 0.01_wp
+    real(wp), parameter :: width = 64, middle = 40, speed = 0.01_wp
     integer :: b, i
     call empty_deck(scene%deck)
     call choose_numerics(scene%deck, numerics)
