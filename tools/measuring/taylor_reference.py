@@ -107,6 +107,6 @@ def measure_reference(words):
     velocity = float(words[0])
     across = int(words[1]) if len(words) > 1 else 15
     x = 1e3 * impact(velocity, across, words[2:])
-    at = np.interp(0.2 * 1e3 * LENGTH, x[:, -1, 1], x[:, -1, 0])
-    print(f"finite elements, {velocity:.0f} m/s, {across} across: length {x[..., 1].max():.2f}, foot diameter "
+    at = np.interp(0.2 * 1e3 * LENGTH + x[..., 1].min(), x[:, -1, 1], x[:, -1, 0])
+    print(f"finite elements, {velocity:.0f} m/s, {across} across: length {np.ptp(x[..., 1]):.2f}, foot diameter "
           f"{2 * x[..., 0].max():.2f}, diameter at 0.2 of the first length {2 * at:.2f} mm")
