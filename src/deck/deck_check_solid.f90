@@ -23,6 +23,7 @@ contains
     type(key_table), intent(in) :: tables(:)
     type(problem_list), intent(inout) :: problems, warnings
     integer :: i
+    call check_numerics(deck, tables(find_table(tables, 'solid', 1)), problems)
     do i = 1, size(deck%body)
       call check_body(deck, deck%body(i), i, tables(find_table(tables, 'body', i)), problems, warnings)
     end do
@@ -36,6 +37,18 @@ contains
       call check_clamp(deck, deck%clamp(i), tables(find_table(tables, 'clamp', i)), problems)
     end do
   end subroutine check_solid
+
+  !> Shape and transfer must fit each other.
+  subroutine check_numerics(deck, table, problems)
+    type(deck_type), intent(in) :: deck
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems
+    if (deck%solid%transfer == 'apic') then
+      if (deck%solid%shape /= 'quadratic') call problems%add_at_key(table, 'transfer', &
+        'transfer = ''apic'' needs shape = ''quadratic'': linear functions make it unstable as particles near the faces of cells')
+      if (table%is_given('flip')) call problems%add_at_key(table, 'flip', 'flip belongs to transfer = ''flip''')
+    end if
+  end subroutine check_numerics
 
   subroutine check_body(deck, body, i, table, problems, warnings)
     type(deck_type), intent(in) :: deck

@@ -57,7 +57,7 @@ contains
   pure logical function in_reach(mesh, x)
     type(mesh_type), intent(in) :: mesh
     real(wp), intent(in) :: x(3)
-    in_reach = all(abs(x - mesh%lower) < 1e9_wp*mesh%spacing)
+    in_reach = all(abs(x - mesh%lower) < 5e8_wp*mesh%spacing)
   end function in_reach
 
   !> Ends the run with a message that names the particle, its material, place and cell, the step and what limits it.

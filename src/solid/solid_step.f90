@@ -16,7 +16,8 @@ module solid_step
   use solid_load, only: loaded_cells, apply_load, book_load
   use solid_state, only: solid_type, limit_type, frame_of, match_nodes, book_impulse, book_gravity_impulse, n_supports, &
     scheme_musl, scheme_usf
-  use stress_update, only: update_stress, signal_speeds
+  use solid_time_step, only: find_limit
+  use stress_update, only: update_stress
   use supports, only: hold_nodes, sum_held
   use transfer, only: particles_to_nodes, nodes_to_particles, move_particles
   implicit none
@@ -39,7 +40,7 @@ contains
       do set = 1, solid%n_sets
         if (solid%block(set, b)%n == 0) cycle
         call check_particles(mesh, solid, set, b)
-        call find_limit(solid, set, solid%block(set, b), solid%limit(set, b))
+        call find_limit(mesh, solid, set, b)
       end do
       call count_particles(solid%block(:, b), mesh%brick_cells, solid%count(b))
       call scatter_brick(mesh, solid, b)
@@ -232,30 +233,6 @@ contains
       end do
     end do
   end subroutine move_and_strain
-
-  !> The fastest signal of a block; of equal ones the first.
-  pure subroutine find_limit(solid, set, blk, limit)
-    type(solid_type), intent(in) :: solid
-    integer, intent(in) :: set
-    type(particle_block), intent(in) :: blk
-    type(limit_type), intent(out) :: limit
-    real(wp) :: signal(chunk), largest
-    integer :: first, n, i
-    do first = 1, blk%n, chunk
-      n = min(chunk, blk%n - first + 1)
-      call signal_speeds(solid%material(set), n, blk%capacity, size(blk%f, 2), blk%f, first, signal)
-      largest = 0
-      !$omp simd reduction(max:largest)
-      do i = 1, n
-        largest = max(largest, signal(i))
-      end do
-      if (largest <= limit%signal) cycle
-      limit%signal = largest
-      do i = n, 1, -1
-        if (signal(i) >= largest) limit%index = first + i - 1
-      end do
-    end do
-  end subroutine find_limit
 
   pure subroutine count_particles(blocks, n, counts)
     type(particle_block), intent(in) :: blocks(:)
