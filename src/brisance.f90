@@ -2,6 +2,7 @@
 program brisance
   use errors, only: exit_done
   use main_loop, only: run_scene
+  use material_test, only: run_material_tests, tell_material_tests
   use options, only: options_type, read_options, usage
   use parallel, only: parallel_start, parallel_stop, is_root
   use plan, only: print_plan
@@ -28,12 +29,17 @@ program brisance
     if (is_root()) print '(2a)', 'brisance ', version_string
   else
     call read_scene(options, scene)
-    if (is_root() .and. .not. options%quiet) call print_plan(scene)
-    if (.not. options%check) then
-      call make_scene(scene)
-      call open_records(scene, options, records)
-      call run_scene(scene, records, status)
-      call close_records(scene, records, status)
+    if (options%material_test .or. .not. (scene%deck%has_flow .or. scene%deck%has_solid)) then
+      call tell_material_tests(scene%deck)
+      if (.not. options%check) call run_material_tests(scene%deck)
+    else
+      if (is_root() .and. .not. options%quiet) call print_plan(scene)
+      if (.not. options%check) then
+        call make_scene(scene)
+        call open_records(scene, options, records)
+        call run_scene(scene, records, status)
+        call close_records(scene, records, status)
+      end if
     end if
   end if
   call parallel_stop()

@@ -5,6 +5,7 @@ module deck_check
   use deck_check_flow, only: check_flow
   use deck_check_geometry, only: check_geometry
   use deck_check_material, only: check_material, check_name
+  use deck_check_material_test, only: check_material_tests
   use deck_check_shape, only: check_point
   use deck_check_solid, only: check_solid
   use deck_keys, only: key_table, key_type, kind_real, word_length
@@ -27,14 +28,18 @@ contains
     type(key_table), intent(in) :: tables(:) !< of the deck's groups
     type(problem_list), intent(inout) :: problems, warnings
     integer :: i
+    logical :: has_scene
+    deck%has_flow = size(deck%region) + size(deck%charge) > 0
+    deck%has_solid = size(deck%body) > 0
+    has_scene = deck%has_flow .or. deck%has_solid .or. size(deck%material_test) == 0
     do i = 1, size(tables)
+      ! tests of materials need no mesh and no end
+      if (.not. has_scene .and. (tables(i)%group == 'mesh' .or. tables(i)%group == 'run')) cycle
       call check_required(tables(i), problems)
       call check_usual(tables(i), trim(deck%run%units), warnings)
     end do
-    deck%has_flow = size(deck%region) + size(deck%charge) > 0
-    deck%has_solid = size(deck%body) > 0
-    if (.not. (deck%has_flow .or. deck%has_solid)) call problems%add(0, '', &
-      'nothing to compute: the deck has no &region, no &charge and no &body')
+    if (has_scene .and. .not. (deck%has_flow .or. deck%has_solid)) call problems%add(0, '', &
+      'nothing to compute: the deck has no &region, no &charge and no &body, nor a &material_test')
     call check_mesh(deck, tables(find_table(tables, 'mesh', 1)), problems)
     call check_geometry(deck, tables, problems)
     call check_boundary(deck, tables(find_table(tables, 'boundary', 1)), problems)
@@ -44,6 +49,7 @@ contains
     call check_material_names(deck, tables, problems)
     if (deck%has_flow) call check_flow(deck, tables, problems, warnings)
     call check_solid(deck, tables, problems, warnings)
+    call check_material_tests(deck, tables, problems, warnings)
     do i = 1, size(deck%gauge)
       call check_gauge(deck, i, tables(find_table(tables, 'gauge', i)), problems)
     end do
@@ -278,7 +284,8 @@ contains
       associate (name => deck%material(i)%name)
         if (name == '') cycle
         if (any(deck%region%material == name) .or. any(deck%charge%explosive == name) .or. any(deck%body%material == name) &
-            .or. any(deck%reinforcement%material == name) .or. deck%boundary%inflow_material == name) cycle
+            .or. any(deck%reinforcement%material == name) .or. deck%boundary%inflow_material == name &
+            .or. any(deck%material_test%material == name)) cycle
         call warnings%add_at_key(tables(find_table(tables, 'material', i)), 'name', 'material '''//trim(name)// &
           ''' is not used')
       end associate

@@ -34,7 +34,7 @@ contains
     call fill_material(material, system)
     if (.not. has_all_constants(material, table, problems)) return
     call warn_of_idle_constants(material, table, warnings)
-    call check_failure(material, table, problems)
+    call check_failure(material, table, problems, warnings)
     if (material%model == 'hjc') call check_hjc(material, table, problems, warnings)
     if (material%eos == 'cochran_chan') call check_cochran_chan(material, table, problems)
     if (material%eos == 'jwl') call check_afterburn(material, table, problems, warnings)
@@ -242,10 +242,10 @@ contains
     end do
   end subroutine warn_of_idle_constants
 
-  subroutine check_failure(material, table, problems)
+  subroutine check_failure(material, table, problems, warnings)
     type(material_group), intent(in) :: material
     type(key_table), intent(in) :: table
-    type(problem_list), intent(inout) :: problems
+    type(problem_list), intent(inout) :: problems, warnings
     character(key_length), allocatable :: missing(:)
     if (material%failure == 'strain' .and. .not. material%failure_strain > 0.0_wp) then
       call problems%add_at_key(table, 'failure', 'failure = ''strain'' also needs failure_strain')
@@ -262,6 +262,9 @@ contains
     else if (material%failure == 'damage' .and. material%model /= 'hjc' .and. material%model /= 'rht') then
       call problems%add_at_key(table, 'failure', 'model '''//trim(material%model)//''' has no damage (allowed: strain, none)')
     end if
+    if (material%fracture_energy > 0.0_wp .and. material%failure /= 'fracture_energy' .and. &
+      (material%model == 'hjc' .or. material%model == 'rht')) call warnings%add_at_key(table, 'fracture_energy', &
+      'has no effect with failure = '''//trim(material%failure)//'''; failure = ''fracture_energy'' uses it')
     if (material%tensile_rate_factor /= 'none' .and. material%model /= 'hjc') &
       call problems%add_at_key(table, 'tensile_rate_factor', 'is for the model hjc (rht has rates of its own)')
   end subroutine check_failure

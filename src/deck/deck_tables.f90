@@ -7,6 +7,7 @@ module deck_tables
   use deck_boundary, only: boundary_keys
   use deck_flow, only: flow_keys
   use deck_material, only: material_keys
+  use deck_material_test, only: material_test_keys
   use deck_region, only: region_keys
   use deck_charge, only: charge_keys
   use deck_detonator, only: detonator_keys
@@ -21,9 +22,9 @@ module deck_tables
   private
   public :: allocate_groups, group_count, group_number, make_table, make_tables, find_table, may_repeat
 
-  character(16), parameter, public :: group_names(16) = [character(16) :: 'run', 'mesh', 'boundary', 'flow', 'material', &
+  character(16), parameter, public :: group_names(17) = [character(16) :: 'run', 'mesh', 'boundary', 'flow', 'material', &
     'region', 'charge', 'detonator', 'solid', 'body', 'hole', 'reinforcement', 'clamp', 'coupling', 'gauge', &
-    'output'] !< in deck order
+    'output', 'material_test'] !< in deck order
 
 contains
 
@@ -40,7 +41,7 @@ contains
   pure logical function may_repeat(group)
     character(*), intent(in) :: group
     select case (group)
-    case ('material', 'region', 'charge', 'detonator', 'body', 'hole', 'reinforcement', 'clamp', 'gauge')
+    case ('material', 'region', 'charge', 'detonator', 'body', 'hole', 'reinforcement', 'clamp', 'gauge', 'material_test')
       may_repeat = .true.
     case default
       may_repeat = .false.
@@ -53,7 +54,7 @@ contains
     integer, intent(in) :: count(size(group_names))
     allocate (deck%material(count(5)), deck%region(count(6)), deck%charge(count(7)), deck%detonator(count(8)))
     allocate (deck%body(count(10)), deck%hole(count(11)), deck%reinforcement(count(12)), deck%clamp(count(13)))
-    allocate (deck%gauge(count(15)))
+    allocate (deck%gauge(count(15)), deck%material_test(count(17)))
   end subroutine allocate_groups
 
   !> How many groups of this name the deck type holds (1 for one that may not be repeated, whether the file has it or not).
@@ -80,6 +81,8 @@ contains
       n = size(deck%clamp)
     case ('gauge')
       n = size(deck%gauge)
+    case ('material_test')
+      n = size(deck%material_test)
     end select
   end function group_count
 
@@ -122,6 +125,8 @@ contains
       call gauge_keys(deck%gauge(i), table)
     case ('output')
       call output_keys(deck%output, table)
+    case ('material_test')
+      call material_test_keys(deck%material_test(i), table)
     end select
     table%index = i
   end subroutine make_table

@@ -7,6 +7,7 @@ module deck_types
   use deck_boundary, only: boundary_group
   use deck_flow, only: flow_group
   use deck_material, only: material_group
+  use deck_material_test, only: material_test_group
   use deck_region, only: region_group
   use deck_charge, only: charge_group
   use deck_detonator, only: detonator_group
@@ -22,7 +23,7 @@ module deck_types
   private
   public :: unset, word_length, path_length
   public :: run_group, mesh_group, boundary_group, flow_group, material_group, region_group, charge_group, &
-    detonator_group, solid_group
+    detonator_group, solid_group, material_test_group
   public :: body_group, hole_group, reinforcement_group, clamp_group, coupling_group, gauge_group, output_group
   public :: find_material, find_body
 
@@ -47,6 +48,7 @@ module deck_types
     type(coupling_group) :: coupling
     type(gauge_group), allocatable :: gauge(:)
     type(output_group) :: output
+    type(material_test_group), allocatable :: material_test(:)
     logical :: has_flow = .false. !< there is a region or a charge
     logical :: has_solid = .false. !< there is a body
   end type deck_type

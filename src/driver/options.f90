@@ -14,6 +14,7 @@ module options
     character(:), allocatable :: restart_file !< empty: the newest in the output folder
     logical :: restart = .false.
     logical :: check = .false. !< print the plan and stop
+    logical :: material_test = .false. !< run the material tests of the deck instead of its scene
     logical :: quiet = .false.
     logical :: help = .false.
     logical :: version = .false.
@@ -23,8 +24,8 @@ module options
     character(256), allocatable :: overrides(:) !< group%name=value
   end type options_type
 
-  character(*), parameter :: known(10) = [character(12) :: '--check', '--restart', '--output', '--until', '--steps', '--set', &
-                                          '--quiet', '--wall-limit', '--help', '--version']
+  character(*), parameter :: known(11) = [character(15) :: '--check', '--material-test', '--restart', '--output', '--until', &
+                                          '--steps', '--set', '--quiet', '--wall-limit', '--help', '--version']
 
 contains
 
@@ -33,6 +34,7 @@ contains
     character(:), allocatable :: lines
     lines = 'usage: brisance DECK [options]'//new_line('a')// &
       '  --check              read and check the deck, print the plan, run nothing'//new_line('a')// &
+      '  --material-test      run the material tests of the deck, write their curves, and stop'//new_line('a')// &
       '  --restart[=FILE]     go on from FILE, or from the newest restart file of the output folder'//new_line('a')// &
       '  --output DIR         output folder (default: from the deck, else runs/<deck name>)'//new_line('a')// &
       '  --until TIME         end at this time, if it is before the end time of the deck'//new_line('a')// &
@@ -64,6 +66,7 @@ contains
       call split_option(argument, name, value)
       select case (name)
       case ('--check'); options%check = .true.
+      case ('--material-test'); options%material_test = .true.
       case ('--quiet'); options%quiet = .true.
       case ('--help'); options%help = .true.
       case ('--version'); options%version = .true.

@@ -22,7 +22,8 @@ module setup
 
 contains
 
-  !> Reads and checks the deck, applies the options, and lays out the mesh. Nothing large is allocated and nothing is written.
+  !> Reads and checks the deck, applies the options, and lays out the mesh if the deck has a scene. Nothing large is allocated and
+  !> nothing is written.
   subroutine read_scene(options, scene)
     type(options_type), intent(in) :: options
     type(scene_type), intent(out) :: scene
@@ -30,6 +31,7 @@ contains
     call read_deck(options%deck, scene%deck, options%overrides)
     if (len(options%output) > 0) scene%deck%output%directory = options%output
     if (options%wall_limit > 0) scene%deck%run%wall_limit = options%wall_limit
+    if (.not. (scene%deck%has_flow .or. scene%deck%has_solid)) return ! material tests only
     call lay_out_scene(scene)
     scene%clock%end_time = min(scene%clock%end_time, options%until)
   end subroutine read_scene

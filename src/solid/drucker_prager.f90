@@ -67,7 +67,7 @@ contains
     c = cohesion
     t = limit
     failed = failure_damage
-    inverse_strain = 1/failure_strain
+    inverse_strain = merge(1/failure_strain, 0.0_wp, failure_strain < huge(1.0_wp))
     !$omp simd private(p, k, most, increment, stress)
     do i = 1, n
       k = merge(c, 0.0_wp, damage(i) < failed)

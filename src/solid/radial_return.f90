@@ -24,7 +24,7 @@ contains
     real(wp) :: increment, stress, by_hardening, by_limit, inverse_strain
     by_hardening = 1/(3*shear_modulus + hardening)
     by_limit = 1/(3*shear_modulus)
-    inverse_strain = 1/failure_strain
+    inverse_strain = merge(1/failure_strain, 0.0_wp, failure_strain < huge(1.0_wp)) ! no tiny numbers, which are slow
     !$omp simd private(increment, stress)
     do i = 1, n
       increment = max((trial(i) - yield(i))*by_hardening, (trial(i) - ultimate)*by_limit, 0.0_wp)
