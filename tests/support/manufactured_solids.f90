@@ -1,11 +1,12 @@
 !> Manufactured solutions of the solid in two dimensions: a motion is prescribed, and the body force that it needs is given to the
 !> particles as a kick before each step. The error of the positions then shows the order of the method.
 !>
-!> axis_aligned: u = A sin(2 pi X) sin(pi c t), v = -A sin(2 pi Y) sin(pi c t) in a unit square whose sides slide
-!> (Sadeghirad, Brannon & Burghardt 2011; Wallstedt & Guilkey 2008). vortex: rings turn by A (1 - cos(2 pi t/T))/2 (1 - 16 (R - 1)^2)^4
-!> for 3/4 < R < 5/4, which shears without any change of volume. Kamojjala, Brannon, Sadeghirad & Guilkey (2015) have the power 2, with
-!> which the body force jumps at the edges of the ring; here it is smooth, and the ring lies in a square at rest instead of alone,
-!> so that no surface is near.
+!> With g = A (1 - cos(2 pi t/T))/2 in both:
+!> axis_aligned: u = g sin(2 pi X), v = -g sin(2 pi Y) in a unit square whose sides slide (as Sadeghirad, Brannon & Burghardt 2011, with
+!> a course over time that starts from rest);
+!> vortex: rings turn by g (1 - 16 (R - 1)^2)^4 for 3/4 < R < 5/4, which shears without any change of volume. Kamojjala, Brannon,
+!> Sadeghirad & Guilkey (2015) have the power 2, with which the body force jumps at the edges of the ring; here it is smooth, and
+!> the ring lies in a square at rest instead of alone, so that no surface is near.
 module manufactured_solids
   use constants, only: pi
   use deck_types, only: material_group
@@ -29,8 +30,7 @@ module manufactured_solids
 
   real(wp), parameter :: density = 1000, youngs_modulus = 1e7_wp, poissons_ratio = 0.3_wp
   real(wp), parameter :: shear = youngs_modulus/(2*(1 + poissons_ratio)), bulk = youngs_modulus/(3*(1 - 2*poissons_ratio))
-  real(wp), parameter :: wave = 100 !< sqrt(E/density)
-  real(wp), parameter :: period = 0.02_wp !< of both motions: 2/wave
+  real(wp), parameter :: period = 0.02_wp !< of both motions: 2 sqrt(density/E)
 
 contains
 
@@ -139,9 +139,10 @@ contains
       position = r*[cos(angle), sin(angle)]
       velocity = r*rate*[-sin(angle), cos(angle)]
     else
-      shape = problem%amplitude*[1, -1]*sin(2*pi*x)
-      position = x + shape*sin(pi*wave*time)
-      velocity = shape*pi*wave*cos(pi*wave*time)
+      g = course(problem%amplitude, time)
+      shape = [1, -1]*sin(2*pi*x)
+      position = x + shape*g(0)
+      velocity = shape*g(1)
     end if
   end subroutine motion_of
 
@@ -150,7 +151,7 @@ contains
     type(manufactured_type), intent(in) :: problem
     real(wp), intent(in) :: x(2), time
     real(wp) :: force(2)
-    real(wp) :: u(2), f(2), slope(2), jacobian, other, r, a(0:2), g(0:2), gamma, gamma_slope, radial, around, angle
+    real(wp) :: f(2), slope(2), jacobian, other, r, a(0:2), g(0:2), gamma, gamma_slope, radial, around, angle
     integer :: d
     if (problem%motion == 'vortex') then
       r = norm2(x)
@@ -172,9 +173,9 @@ contains
       angle = atan2(x(2), x(1)) + a(0)*g(0)
       force = radial*[cos(angle), sin(angle)] + around*[-sin(angle), cos(angle)]
     else
-      u = problem%amplitude*[1, -1]*sin(2*pi*x)*sin(pi*wave*time)
-      f = 1 + 2*pi*problem%amplitude*[1, -1]*cos(2*pi*x)*sin(pi*wave*time)
-      slope = -4*pi**2*u
+      g = course(problem%amplitude, time)
+      f = 1 + 2*pi*[1, -1]*cos(2*pi*x)*g(0)
+      slope = -4*pi**2*[1, -1]*sin(2*pi*x)*g(0)
       jacobian = f(1)*f(2)
       do d = 1, 2
         if (problem%law == 'neo_hookean') then
@@ -187,7 +188,7 @@ contains
           force(d) = slope(d)*(bulk + 4*shear/3*jacobian)/f(d)**2
         end if
       end do
-      force = -(pi*wave)**2*u - force/density
+      force = [1, -1]*sin(2*pi*x)*g(2) - force/density
     end if
   end function force_of
 
@@ -202,7 +203,7 @@ contains
     h = [q**4, -128*s*q**3, -128*q**3 + 12288*s**2*q**2]
   end function ring
 
-  !> Angle of the vortex over time, and its first two derivatives.
+  !> Course of both motions over time, and its first two derivatives.
   pure function course(amplitude, time) result(g)
     real(wp), intent(in) :: amplitude, time
     real(wp) :: g(0:2), w

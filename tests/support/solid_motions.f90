@@ -112,6 +112,9 @@ contains
         do i = 1, blk%n
           blk%f(i, at_velocity) = -spin*(blk%f(i, at_position + 1) - center(2))
           blk%f(i, at_velocity + 1) = spin*(blk%f(i, at_position) - center(1))
+          if (scene%solid%at_affine(1) == 0) cycle
+          blk%f(i, scene%solid%at_affine(1) + 1) = -spin
+          blk%f(i, scene%solid%at_affine(1) + 3) = spin
         end do
       end associate
     end do
@@ -151,21 +154,24 @@ contains
     rotation%momentum = maxval(abs(totals%momentum))/(totals%mass(1)*rim)
   end function run_rotation
 
-  !> Angular momentum, kinetic energy, kinetic and internal energy, mean distance from the centre.
+  !> Angular momentum (with the part of the affine matrix, whose inertia is m h^2/4), kinetic energy, kinetic and internal energy,
+  !> mean distance from the centre.
   function moments(scene, center) result(m)
     type(solid_scene), intent(in) :: scene
     real(wp), intent(in) :: center(2)
-    real(wp) :: m(4), d(2)
+    real(wp) :: m(4), d(2), inertia
     type(solid_totals_type) :: totals
     integer :: b, i
     totals = sum_solid(scene%mesh, scene%solid)
+    inertia = 0.25_wp*scene%mesh%spacing(1)**2
     m = 0
     do b = 1, scene%mesh%n_local
-      associate (blk => scene%solid%block(1, b))
+      associate (blk => scene%solid%block(1, b), affine => scene%solid%at_affine(1))
         do i = 1, blk%n
           d = blk%f(i, at_position:at_position + 1) - center
           m(1) = m(1) + blk%f(i, at_mass)*(d(1)*blk%f(i, at_velocity + 1) - d(2)*blk%f(i, at_velocity))
           m(4) = m(4) + blk%f(i, at_mass)*norm2(d)
+          if (affine > 0) m(1) = m(1) + inertia*blk%f(i, at_mass)*(blk%f(i, affine + 3) - blk%f(i, affine + 1))
         end do
       end associate
     end do

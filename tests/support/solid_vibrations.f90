@@ -1,7 +1,8 @@
 !> Small motions of elastic solids with exact solutions: a vibrating bar, a pulse in a bar, a thick cylinder.
 module solid_vibrations
+  use blocks, only: block, allocate_cells
   use constants, only: pi
-  use deck_types, only: material_group
+  use deck_types, only: material_group, body_group, hole_group
   use kinds, only: wp
   use particles, only: at_position, at_velocity, at_mass, at_volume, at_stress
   use solid_numerics, only: numerics_type, choose_numerics
@@ -11,7 +12,10 @@ module solid_vibrations
   use solid_totals, only: solid_totals_type, sum_solid
   implicit none
   private
-  public :: run_bar, run_pulse
+  public :: run_bar, run_pulse, run_cylinder
+
+  real(wp), parameter :: shear = 200e9_wp/2.6_wp, modulus = 200e9_wp/1.2_wp + 4*shear/3 !< of the metal: G and K + 4/3 G
+  real(wp), parameter :: layer = 0.25_wp !< of the cylinder that carries the load
 
   !> A bar that vibrates in its first mode.
   type, public :: bar_type
@@ -19,6 +23,12 @@ module solid_vibrations
     real(wp) :: loss = 0 !< energy lost per cycle, part of what there was; negative: gained
     real(wp) :: balance = 0 !< kinetic and internal energy over the first, less 1
   end type bar_type
+
+  !> A thick cylinder loaded from inside.
+  type, public :: cylinder_type
+    real(wp) :: displacement = 0 !< mean error of the radial displacement over the largest
+    real(wp) :: stress = 0 !< mean error of the stress around, away from the surfaces, over the largest
+  end type cylinder_type
 
 contains
 
@@ -140,10 +150,9 @@ contains
   subroutine strain_uniaxially(f, strain)
     real(wp), intent(inout) :: f(:)
     real(wp), intent(in) :: strain
-    real(wp), parameter :: bulk = 200e9_wp/1.2_wp, shear = 200e9_wp/2.6_wp
     f(at_volume) = f(at_volume)*(1 + strain)
-    f(at_stress) = (bulk + 4*shear/3)*strain
-    f(at_stress + 1:at_stress + 2) = (bulk - 2*shear/3)*strain
+    f(at_stress) = modulus*strain
+    f(at_stress + 1:at_stress + 2) = (modulus - 2*shear)*strain
   end subroutine strain_uniaxially
 
   subroutine center_of_pulse(scene, place, weight)
@@ -164,5 +173,131 @@ contains
     end do
     place = place/weight
   end subroutine center_of_pulse
+
+  !> A quarter of a cylinder of radii 1 and 2 in plane strain. A radial force per volume in its innermost quarter stands for a pressure,
+  !> so that the boundary needs no treatment of its own; beyond it Lame's solution holds. The load rises slowly and the motion is
+  !> damped; cells: per unit length.
+  function run_cylinder(numerics, cells) result(cylinder)
+    type(numerics_type), intent(in) :: numerics
+    integer, intent(in) :: cells
+    type(cylinder_type) :: cylinder
+    type(solid_scene) :: scene
+    type(solid_limit_type) :: limit
+    real(wp), allocatable :: start(:, :)
+    real(wp), parameter :: force = 1e6_wp
+    type(block), allocatable :: scale(:), load(:)
+    integer, parameter :: none(3) = 0
+    real(wp) :: c, time, x(2), r, exact, around, largest(2), weight(2), volume
+    integer :: b, i, cell(2)
+    call empty_deck(scene%deck)
+    call choose_numerics(scene%deck, numerics)
+    scene%deck%material = [metal('m', 'elastic')]
+    scene%deck%boundary%solid_x_low = 'symmetry'
+    scene%deck%boundary%solid_y_low = 'symmetry'
+    scene%deck%body = [body_group(name='a', material='m', shape='sphere', center=[0.0_wp, 0.0_wp, 0.5_wp], radius=2.0_wp, &
+      spacing=0.5_wp/cells)]
+    scene%deck%hole = [hole_group(body='a', shape='sphere', center=[0.0_wp, 0.0_wp, 0.5_wp], radius=1.0_wp)]
+    call start_scene(scene, [2*cells + 2, 2*cells + 2, 1], [0.0_wp, 0.0_wp, 0.0_wp], &
+      [2 + 2.0_wp/cells, 2 + 2.0_wp/cells, 1.0_wp], [2*cells + 2, 2*cells + 2, 1])
+    allocate (start(2, scene%solid%n_particles))
+    volume = 0
+    allocate (scale(scene%mesh%n_local))
+    call allocate_cells(scale(1), scene%mesh%brick_cells, none, 3, 0.0_wp)
+    associate (blk => scene%solid%block(1, 1))
+      do i = 1, blk%n
+        x = blk%f(i, at_position:at_position + 1)
+        start(:, blk%id(i)) = x
+        if (norm2(x) > 1 + layer) cycle
+        volume = volume + blk%f(i, at_volume)
+        cell = 1 + int(x*cells)
+        scale(1)%a(cell(1), 1:2, cell(2), 1) = scale(1)%a(cell(1), 1:2, cell(2), 1) + force*blk%f(i, at_volume)*x/norm2(x)
+      end do
+    end associate
+    ! the particles of the layer have not quite its volume
+    r = 0.25_wp*pi*((1 + layer)**2 - 1)/volume
+    scale(1)%a = r*scale(1)%a
+    allocate (load(1), source=scale(1:1))
+    c = sqrt(modulus/8000)
+    time = 0
+    do while (time*c < 40)
+      limit = solid_limit(scene%mesh, scene%solid)
+      ! damped particles, so that they come to rest
+      do b = 1, scene%mesh%n_local
+        associate (blk => scene%solid%block(1, b))
+          do i = 1, blk%n
+            blk%f(i, at_velocity:at_velocity + 1) = (1 - 0.6_wp*c*limit%dt)*blk%f(i, at_velocity:at_velocity + 1)
+          end do
+        end associate
+      end do
+      call project_solid(scene%mesh, scene%halo, scene%solid)
+      load(1)%a = min(time*c/10, 1.0_wp)*scale(1)%a
+      call advance_solid(scene%mesh, scene%halo, scene%solid, limit%dt, load)
+      time = time + limit%dt
+    end do
+    largest = [lame(1 + layer, force), hoop(1 + layer, force)]
+    weight = 0
+    do b = 1, scene%mesh%n_local
+      associate (blk => scene%solid%block(1, b))
+        do i = 1, blk%n
+          x = start(:, blk%id(i))
+          r = norm2(x)
+          if (r < 1 + layer) cycle
+          exact = lame(r, force)
+          cylinder%displacement = cylinder%displacement &
+            + abs(dot_product(blk%f(i, at_position:at_position + 1) - x, x)/r - exact)/largest(1)
+          weight(1) = weight(1) + 1
+          if (r < 1.4_wp .or. r > 1.8_wp) cycle
+          around = (blk%f(i, at_stress)*x(2)**2 + blk%f(i, at_stress + 1)*x(1)**2 - 2*blk%f(i, at_stress + 5)*x(1)*x(2))/r**2
+          cylinder%stress = cylinder%stress + abs(around - hoop(r, force))/largest(2)
+          weight(2) = weight(2) + 1
+        end do
+      end associate
+    end do
+    cylinder%displacement = cylinder%displacement/weight(1)
+    cylinder%stress = cylinder%stress/weight(2)
+  end function run_cylinder
+
+  !> Constants of the outer part of the cylinder, u = a r + b/r: its outer surface is free; in the layer u = a' r + b'/r - f r^2/(3 M),
+  !> the inner surface is free, and displacement and radial stress pass from one to the other.
+  pure function outer_constants(load) result(k)
+    real(wp), intent(in) :: load
+    real(wp) :: k(2), m, g2, s, x, ratio, inner, p
+    m = modulus
+    g2 = 2*shear
+    s = 1 + layer
+    ! radial stress of a r + b/r: (2 M - 2 G) a - 2 G b/r^2; of the particular part: -f r (2 M + lambda)/(3 M), lambda = M - 2 G
+    p = load*(3*m - g2)/(3*m)
+    ! b = ratio a (outer), b' = ratio' a' + inner (layer, free at r = 1)
+    ratio = (2*m - g2)/g2*4
+    inner = -p/g2
+    x = (2*m - g2)/g2
+    ! two equations at r = s for a and a'
+    block
+      real(wp) :: e(2, 2), rhs(2), det
+      e(1, :) = [s + ratio/s, -(s + x/s)]
+      rhs(1) = inner/s - load*s**2/(3*m)
+      e(2, :) = [(2*m - g2) - g2*ratio/s**2, -((2*m - g2) - g2*x/s**2)]
+      rhs(2) = -g2*inner/s**2 - p*s
+      det = e(1, 1)*e(2, 2) - e(1, 2)*e(2, 1)
+      k(1) = (rhs(1)*e(2, 2) - e(1, 2)*rhs(2))/det
+      k(2) = ratio*k(1)
+    end block
+  end function outer_constants
+
+  !> Radial displacement.
+  pure real(wp) function lame(r, load)
+    real(wp), intent(in) :: r, load
+    real(wp) :: k(2)
+    k = outer_constants(load)
+    lame = k(1)*r + k(2)/r
+  end function lame
+
+  !> Stress around.
+  pure real(wp) function hoop(r, load)
+    real(wp), intent(in) :: r, load
+    real(wp) :: k(2)
+    k = outer_constants(load)
+    hoop = (2*modulus - 2*shear)*k(1) + 2*shear*k(2)/r**2
+  end function hoop
 
 end module solid_vibrations

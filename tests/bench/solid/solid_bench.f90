@@ -1,49 +1,107 @@
-!> Runs the problems of the solid with all numerics and prints what came out, for tools/bench.
+!> Prints the tables of docs/validation.md for shapes, transfers and schemes of the solid: solid_bench motions | vibrations | orders.
 program solid_bench
+  use iso_fortran_env, only: output_unit
   use kinds, only: wp
+  use manufactured_solids, only: run_manufactured, manufactured_type
   use parallel, only: parallel_start, parallel_stop
-  use solid_motions, only: run_flight, run_rotation, run_extension, run_discs, flight_type, rotation_type, extension_type, &
-    discs_type
+  use solid_motions, only: run_rotation, run_extension, run_discs, rotation_type, extension_type, discs_type
   use solid_numerics, only: numerics_type, numerics_name, all_numerics
-  use solid_vibrations, only: run_bar, run_pulse, bar_type
+  use solid_vibrations, only: run_bar, run_pulse, run_cylinder, bar_type, cylinder_type
   implicit none
   type(numerics_type), allocatable :: list(:)
-  type(numerics_type) :: n
-  type(flight_type) :: flight
-  type(rotation_type) :: rotation
-  type(extension_type) :: extension
-  type(discs_type) :: discs
-  type(bar_type) :: bar
+  character(16) :: word
   integer :: i
-  character(8) :: word
   call parallel_start()
-  list = all_numerics()
-  list = [list, numerics_type(flip=0.99_wp), numerics_type(flip=0.9_wp)]
   call get_command_argument(1, word)
-  if (word /= '') then
-    read (word, *) i
-    list = list(i:i)
-  end if
-  do i = 1, size(list)
-    n = list(i)
-    print '(/, a)', numerics_name(n)
-    flight = run_flight(n, 1000)
-    print '(a, 3es11.2, i6)', ' flight: velocity, position, stress, cells', &
-      flight%velocity, flight%position, flight%stress, flight%cells
-    extension = run_extension(n, 1.1_wp)
-    print '(a, 3es11.2)', ' extension: velocity, volume, stress', extension%velocity, extension%volume, extension%stress
-    discs = run_discs(n)
-    print '(a, 5es11.2)', ' discs: momentum, lowest, kinetic, energy, angular', &
-      discs%momentum, discs%lowest, discs%kinetic, discs%energy, discs%angular_momentum
-    bar = run_bar(n, 10, 1e-3_wp)
-    print '(a, 3es11.2)', ' bar: frequency, loss per cycle, balance', bar%frequency, bar%loss, bar%balance
-    bar = run_bar(n, 10, 0.75_wp)
-    print '(a, 3es11.2)', ' bar, large: frequency, loss per cycle, balance', bar%frequency, bar%loss, bar%balance
-    print '(a, es11.2)', ' pulse: speed', run_pulse(n)
-    rotation = run_rotation(n, 10.0_wp)
-    print '(a, 7es11.2)', ' rotation: turns, angular, kinetic, energy, stress, momentum, radius', &
-      rotation%turns, rotation%angular_momentum, &
-      rotation%kinetic, rotation%energy, rotation%stress, rotation%momentum, rotation%radius
-  end do
+  list = [all_numerics(stable=.true.), numerics_type(flip=0.99_wp), numerics_type(shape='quadratic', flip=0.99_wp)]
+  select case (word)
+  case ('motions')
+    call print_head([character(32) :: 'extension 1 %: stress', '5 %: stress', 'discs: kinetic', 'energy', 'turns: angular', &
+      'kinetic', 'spurious stress', 'radius'])
+    do i = 1, size(list)
+      call print_motions(list(i))
+    end do
+  case ('vibrations')
+    call print_head([character(32) :: 'bar: frequency', 'loss per cycle', 'large: frequency', 'loss per cycle', 'pulse: speed', &
+      'cylinder: displacement', 'stress'])
+    do i = 1, size(list)
+      call print_vibrations(list(i))
+    end do
+  case ('orders')
+    call print_orders('axis_aligned', 'elastic', [1e-4_wp, 0.02_wp], 8, 4)
+    call print_orders('axis_aligned', 'neo_hookean', [1e-4_wp, 0.02_wp], 8, 4)
+    call print_orders('vortex', 'elastic', [1e-4_wp, 0.05_wp], 8, 3)
+    call print_orders('vortex', 'neo_hookean', [1e-4_wp, 0.05_wp], 8, 3)
+  case default
+    print '(a)', 'usage: solid_bench motions | vibrations | orders'
+  end select
   call parallel_stop()
+
+contains
+
+  subroutine print_head(names)
+    character(*), intent(in) :: names(:)
+    integer :: k
+    print '(*(a))', '| shape, transfer, scheme |', (' '//trim(names(k))//' |', k=1, size(names))
+    print '(*(a))', '|', ('---|', k=0, size(names))
+  end subroutine print_head
+
+  subroutine print_row(numerics, values)
+    type(numerics_type), intent(in) :: numerics
+    real(wp), intent(in) :: values(:)
+    print '(3a, *(es10.2, " |"))', '| ', numerics_name(numerics), ' |', values
+    flush (output_unit)
+  end subroutine print_row
+
+  subroutine print_motions(numerics)
+    type(numerics_type), intent(in) :: numerics
+    type(extension_type) :: small, large
+    type(discs_type) :: discs
+    type(rotation_type) :: rotation
+    small = run_extension(numerics, 1.01_wp)
+    large = run_extension(numerics, 1.05_wp)
+    discs = run_discs(numerics)
+    rotation = run_rotation(numerics, 10.0_wp)
+    call print_row(numerics, [small%stress, large%stress, discs%kinetic - 1, discs%energy, rotation%angular_momentum, &
+      rotation%kinetic, rotation%stress, rotation%radius])
+  end subroutine print_motions
+
+  subroutine print_vibrations(numerics)
+    type(numerics_type), intent(in) :: numerics
+    type(bar_type) :: small, large
+    type(cylinder_type) :: cylinder
+    small = run_bar(numerics, 10, 1e-3_wp)
+    large = run_bar(numerics, 10, 0.5_wp)
+    cylinder = run_cylinder(numerics, 12)
+    call print_row(numerics, [small%frequency, small%loss, large%frequency, large%loss, run_pulse(numerics), &
+      cylinder%displacement, cylinder%stress])
+  end subroutine print_vibrations
+
+  !> Errors and orders over n meshes that start with `cells` and double.
+  subroutine print_orders(motion, law, amplitudes, cells, n)
+    character(*), intent(in) :: motion, law
+    real(wp), intent(in) :: amplitudes(:)
+    integer, intent(in) :: cells, n
+    type(manufactured_type) :: problem
+    real(wp) :: error(n)
+    integer :: a, k, m
+    print '(/, 4a)', motion, ', ', law, ': error and order on meshes that double'
+    print '(*(a))', '| shape, transfer, scheme | amplitude |', (' cells | order |', k=1, n)
+    print '(*(a))', '|', ('---|', k=0, 2*n + 1)
+    problem%motion = motion
+    problem%law = law
+    do k = 1, size(list)
+      if (list(k)%scheme == 'usf') cycle
+      do a = 1, size(amplitudes)
+        problem%amplitude = amplitudes(a)
+        do m = 1, n
+          error(m) = run_manufactured(problem, list(k), cells*2**(m - 1))
+        end do
+        print '(3a, es9.1, " |", es10.2, " | |", *(es10.2, " |", f5.2, " |"))', '| ', numerics_name(list(k)), ' |', amplitudes(a), &
+          error(1), (error(m), log(error(m - 1)/error(m))/log(2.0_wp), m=2, n)
+        flush (output_unit)
+      end do
+    end do
+  end subroutine print_orders
+
 end program solid_bench
