@@ -11,6 +11,7 @@ module solid_numerics
     character(16) :: transfer = 'flip' !< of velocities
     character(16) :: scheme = 'musl' !< when the stress is updated
     real(wp) :: flip = 1 !< part of FLIP, the rest is PIC
+    real(wp) :: cfl = 0.5_wp
   end type numerics_type
 
 contains
@@ -23,6 +24,7 @@ contains
     deck%solid%transfer = numerics%transfer
     deck%solid%scheme = numerics%scheme
     deck%solid%flip = numerics%flip
+    deck%solid%cfl = numerics%cfl
   end subroutine choose_numerics
 
   !> 'linear flip musl', and the part of FLIP if it is not 1.
