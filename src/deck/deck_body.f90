@@ -3,7 +3,7 @@ module deck_body
   use kinds, only: wp
   use constants, only: unset
   use deck_keys, only: key_table, word_length
-  use units, only: of_length, of_velocity
+  use units, only: of_length, of_pressure, of_rate, of_velocity
   implicit none
   private
   public :: body_keys, hole_keys
@@ -21,7 +21,9 @@ module deck_body
     real(wp) :: start(3) = unset, end(3) = unset !< axis of the cylinder; base and tip of the ogive
     real(wp) :: caliber_radius_head = 3 !< of the ogive
     real(wp) :: spacing = unset !< of the particles
-    real(wp) :: velocity(3) = 0
+    real(wp) :: velocity(3) = 0 !< at the origin of the coordinates
+    real(wp) :: velocity_gradient(3) = 0 !< the velocity in x, y, z grows by this per length in x, y, z
+    real(wp) :: pressure = unset !< of a fluid at the start
     integer :: line = 0
   end type body_group
 
@@ -54,6 +56,8 @@ contains
     call table%add('caliber_radius_head', group%caliber_radius_head, at_least=0.5_wp)
     call table%add('spacing', group%spacing, of_length, more_than=0.0_wp, required=.true.)
     call table%add('velocity', group%velocity, of_velocity, usual=[-1e5_wp, 1e5_wp])
+    call table%add('velocity_gradient', group%velocity_gradient, of_rate)
+    call table%add('pressure', group%pressure, of_pressure)
   end subroutine body_keys
 
   subroutine hole_keys(group, table)

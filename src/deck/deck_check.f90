@@ -4,7 +4,7 @@ module deck_check
   use constants, only: unset
   use deck_check_flow, only: check_flow
   use deck_check_geometry, only: check_geometry
-  use deck_check_material, only: check_material, check_name
+  use deck_check_material, only: check_material, check_name, check_cells_of_cracks
   use deck_check_material_test, only: check_material_tests
   use deck_check_shape, only: check_point
   use deck_check_solid, only: check_solid
@@ -46,6 +46,12 @@ contains
     do i = 1, size(deck%material)
       call check_material(deck%material(i), trim(deck%run%units), tables(find_table(tables, 'material', i)), problems, warnings)
     end do
+    if (deck%has_solid .and. all(deck%mesh%upper > deck%mesh%lower)) then
+      do i = 1, size(deck%material)
+        call check_cells_of_cracks(deck%material(i), minval(deck%mesh%cell_size(), deck%mesh%active()), &
+          tables(find_table(tables, 'material', i)), warnings)
+      end do
+    end if
     call check_material_names(deck, tables, problems)
     if (deck%has_flow) call check_flow(deck, tables, problems, warnings)
     call check_solid(deck, tables, problems, warnings)

@@ -9,10 +9,12 @@ module deck_check_material
   use units, only: from_si, to_si
   implicit none
   private
-  public :: check_material, check_name
+  public :: check_material, check_name, check_cells_of_cracks
 
   integer, parameter :: key_length = 24
   character(key_length), parameter :: damage_keys(4) = [character(key_length) :: 'jc_d1', 'jc_d2', 'jc_d3', 'jc_d4']
+  character(key_length), parameter :: cracking(6) = [character(key_length) :: 'hjc', 'rht', 'perfect_plasticity', &
+    'linear_hardening', 'johnson_cook', 'simplified_johnson_cook']
   character(key_length), parameter :: damaged_metals(4) = [character(key_length) :: 'perfect_plasticity', 'linear_hardening', &
     'johnson_cook', 'simplified_johnson_cook']
 
@@ -49,6 +51,28 @@ contains
     if (system /= 'none') call check_sense(material, system, table, warnings)
   end subroutine check_material
 
+  !> Cells in which the elastic energy at the tensile strength alone exceeds the fracture energy cannot soften as they should.
+  subroutine check_cells_of_cracks(material, cell, table, warnings)
+    type(material_group), intent(in) :: material
+    real(wp), intent(in) :: cell !< size
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: warnings
+    real(wp) :: strength, largest
+    if (material%failure /= 'fracture_energy' .or. table%incomplete) return
+    select case (material%model)
+    case ('hjc')
+      strength = material%hjc_a*material%hjc_fc/(1 + material%hjc_a*material%hjc_fc/(3*material%hjc_t))
+    case ('rht')
+      strength = material%rht_ft*material%rht_fc
+    case default
+      return
+    end select
+    if (.not. strength > 0.0_wp) return
+    largest = 2*material%youngs_modulus*material%fracture_energy/strength**2
+    if (cell > largest) call warnings%add_at_key(table, 'fracture_energy', 'is less than the elastic energy of a cell of '// &
+      str(cell, 3)//' at the tensile strength: such a crack costs more; cells must be smaller than '//str(largest, 3))
+  end subroutine check_cells_of_cracks
+
   !> Names stand in the headings of tables and in paths inside files.
   subroutine check_name(name, table, problems)
     character(*), intent(in) :: name
@@ -76,8 +100,7 @@ contains
     material%failure = 'none'
     if (material%failure_strain > 0.0_wp) material%failure = 'strain'
     if (material%jc_d1 > unset .or. material%model == 'hjc' .or. material%model == 'rht') material%failure = 'damage'
-    if (material%fracture_energy > 0.0_wp .and. (material%model == 'hjc' .or. material%model == 'rht')) &
-      material%failure = 'fracture_energy'
+    if (material%fracture_energy > 0.0_wp .and. any(material%model == cracking)) material%failure = 'fracture_energy'
   end subroutine fill_material
 
   !> What the strength gives (exponents of the rate, pore crushing at 2/3 fc) and what all concretes share (curve of the solid).
@@ -197,13 +220,15 @@ contains
     case ('elastic')
       names = [character(key_length) :: names, 'tensile_limit']
     case ('perfect_plasticity')
-      names = [character(key_length) :: names, damage_keys, 'tensile_limit']
+      names = [character(key_length) :: names, damage_keys, 'tensile_limit', 'fracture_energy']
     case ('linear_hardening')
-      names = [character(key_length) :: names, damage_keys, 'tensile_limit', 'ultimate_stress']
+      names = [character(key_length) :: names, damage_keys, 'tensile_limit', 'ultimate_stress', 'fracture_energy']
     case ('simplified_johnson_cook')
-      names = [character(key_length) :: names, damage_keys, 'tensile_limit', 'reference_strain_rate']
+      names = [character(key_length) :: names, damage_keys, 'tensile_limit', 'reference_strain_rate', &
+        'fracture_energy']
     case ('johnson_cook')
-      names = [character(key_length) :: names, damage_keys, 'jc_d5', 'tensile_limit', 'taylor_quinney', 'reference_strain_rate']
+      names = [character(key_length) :: names, damage_keys, 'jc_d5', 'tensile_limit', 'taylor_quinney', &
+        'reference_strain_rate', 'fracture_energy']
     case ('drucker_prager')
       names = [character(key_length) :: names, 'dilatancy_angle', 'tensile_limit']
     case ('hjc')
@@ -250,8 +275,10 @@ contains
     if (material%failure == 'strain' .and. .not. material%failure_strain > 0.0_wp) then
       call problems%add_at_key(table, 'failure', 'failure = ''strain'' also needs failure_strain')
     else if (material%failure == 'fracture_energy') then
-      if (material%model /= 'hjc' .and. material%model /= 'rht') then
-        call problems%add_at_key(table, 'failure', 'fracture_energy is for the models hjc and rht')
+      if (.not. any(material%model == cracking)) then
+        call problems%add_at_key(table, 'failure', 'fracture_energy is for hjc, rht and metals with plasticity')
+      else if (any(material%model == damaged_metals) .and. .not. material%failure_strain > 0.0_wp) then
+        call problems%add_at_key(table, 'failure', 'failure = ''fracture_energy'' of a metal also needs failure_strain')
       else if (.not. material%fracture_energy > 0.0_wp) then
         call problems%add_at_key(table, 'failure', 'failure = ''fracture_energy'' also needs fracture_energy')
       end if
@@ -263,7 +290,7 @@ contains
       call problems%add_at_key(table, 'failure', 'model '''//trim(material%model)//''' has no damage (allowed: strain, none)')
     end if
     if (material%fracture_energy > 0.0_wp .and. material%failure /= 'fracture_energy' .and. &
-      (material%model == 'hjc' .or. material%model == 'rht')) call warnings%add_at_key(table, 'fracture_energy', &
+      any(material%model == cracking)) call warnings%add_at_key(table, 'fracture_energy', &
       'has no effect with failure = '''//trim(material%failure)//'''; failure = ''fracture_energy'' uses it')
     if (material%tensile_rate_factor /= 'none' .and. material%model /= 'hjc') &
       call problems%add_at_key(table, 'tensile_rate_factor', 'is for the model hjc (rht has rates of its own)')

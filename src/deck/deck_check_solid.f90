@@ -8,8 +8,8 @@ module deck_check_solid
   use deck_keys, only: key_table
   use deck_problems, only: problem_list, nearest_or_allowed
   use deck_tables, only: find_table
-  use deck_types, only: deck_type, body_group, clamp_group, find_body, find_material, hole_group, &
-    reinforcement_group
+  use deck_types, only: deck_type, body_group, clamp_group, find_body, find_material, heterogeneity_group, &
+    hole_group, reinforcement_group
   use text, only: str
   implicit none
   private
@@ -32,6 +32,9 @@ contains
     end do
     do i = 1, size(deck%reinforcement)
       call check_bars(deck, deck%reinforcement(i), tables(find_table(tables, 'reinforcement', i)), problems, warnings)
+    end do
+    do i = 1, size(deck%heterogeneity)
+      call check_heterogeneity(deck, deck%heterogeneity(i), tables(find_table(tables, 'heterogeneity', i)), problems, warnings)
     end do
     do i = 1, size(deck%clamp)
       call check_clamp(deck, deck%clamp(i), tables(find_table(tables, 'clamp', i)), problems)
@@ -70,6 +73,10 @@ contains
     if (body%spacing > unset .and. all(deck%mesh%upper > unset)) then
       if (any(deck%mesh%active() .and. deck%mesh%cell_size() < 0.999999_wp*body%spacing)) call warnings%add_at_key(table, &
         'spacing', 'is more than the cell size: some cells inside the body will hold no particle')
+    end if
+    if (body%pressure > unset .and. find_material(deck, body%material) > 0) then
+      if (deck%material(find_material(deck, body%material))%model /= 'fluid') call problems%add_at_key(table, 'pressure', &
+        'only a fluid (model = ''fluid'') starts under a pressure')
     end if
     first = find_body(deck, body%name)
     if (first == i .or. first == 0 .or. body%name == '') return
@@ -120,6 +127,36 @@ contains
     if (bars%diameter < spacing) call warnings%add_at_key(table, 'diameter', &
       'is less than the spacing of the particles: give these bars a finer spacing')
   end subroutine check_bars
+
+  subroutine check_heterogeneity(deck, field, table, problems, warnings)
+    type(deck_type), intent(in) :: deck
+    type(heterogeneity_group), intent(inout) :: field
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems, warnings
+    integer :: i, body, material
+    if (field%body == '' .and. field%material == '') call problems%add_at_key(table, '', 'body or material must be given')
+    if (field%body /= '') call refer_to_body(deck, field%body, table, problems)
+    if (field%material /= '') call refer_to_solid(deck, field%material, table, problems)
+    where (.not. field%correlation_length > unset) field%correlation_length = field%correlation_length(1)
+    body = find_body(deck, field%body)
+    material = find_material(deck, field%material)
+    if (field%material == '' .and. body > 0) material = find_material(deck, deck%body(body)%material)
+    if (material == 0) return
+    if (deck%material(material)%model == 'fluid') call problems%add_at_key(table, '', 'material '''// &
+      trim(deck%material(material)%name)//''' is a fluid: it has no strength')
+    if (deck%material(material)%model == 'neo_hookean') call problems%add_at_key(table, '', 'material '''// &
+      trim(deck%material(material)%name)//''' (neo_hookean) has no strength that could vary')
+    if (deck%material(material)%model /= 'fluid' .and. deck%material(material)%eos /= '') call problems%add_at_key(table, '', &
+      'material '''//trim(deck%material(material)%name)//''' takes its pressure from an eos, which does not vary')
+    do i = 1, size(deck%body)
+      if (body > 0 .and. find_body(deck, deck%body(i)%name) /= body) cycle
+      if (find_material(deck, deck%body(i)%material) /= material) cycle
+      if (.not. any(deck%mesh%active() .and. field%correlation_length < 2*deck%body(i)%spacing)) cycle
+      if (.not. field%correlation_length(1) > unset) cycle
+      call warnings%add_at_key(table, 'correlation_length', 'is less than two particles of body '''// &
+        trim(deck%body(i)%name)//''', which do not resolve it')
+    end do
+  end subroutine check_heterogeneity
 
   subroutine check_clamp(deck, clamp, table, problems)
     type(deck_type), intent(in) :: deck

@@ -18,6 +18,9 @@ module deck_output
     logical :: peak_maps = .true.
     logical :: flow_snapshots = .true.
     logical :: solid_snapshots = .true.
+    logical :: fragments = .false. !< of the solid, counted with each snapshot
+    real(wp) :: fragment_reach = 1.8_wp !< distance over spacing up to which particles hang together
+    real(wp) :: fragment_damage = 1 !< particles of at least this damage belong to no fragment
     integer :: line = 0
   end type output_group
 
@@ -36,6 +39,9 @@ contains
     call table%add('peak_maps', group%peak_maps)
     call table%add('flow_snapshots', group%flow_snapshots)
     call table%add('solid_snapshots', group%solid_snapshots)
+    call table%add('fragments', group%fragments)
+    call table%add('fragment_reach', group%fragment_reach, more_than=1.0_wp, at_most=10.0_wp)
+    call table%add('fragment_damage', group%fragment_damage, more_than=0.0_wp)
   end subroutine output_keys
 
 end module deck_output

@@ -14,6 +14,7 @@ module deck_tables
   use deck_solid, only: solid_keys
   use deck_body, only: body_keys, hole_keys
   use deck_reinforcement, only: reinforcement_keys
+  use deck_heterogeneity, only: heterogeneity_keys
   use deck_clamp, only: clamp_keys
   use deck_coupling, only: coupling_keys
   use deck_gauge, only: gauge_keys
@@ -22,9 +23,9 @@ module deck_tables
   private
   public :: allocate_groups, group_count, group_number, make_table, make_tables, find_table, may_repeat
 
-  character(16), parameter, public :: group_names(17) = [character(16) :: 'run', 'mesh', 'boundary', 'flow', 'material', &
-    'region', 'charge', 'detonator', 'solid', 'body', 'hole', 'reinforcement', 'clamp', 'coupling', 'gauge', &
-    'output', 'material_test'] !< in deck order
+  character(16), parameter, public :: group_names(18) = [character(16) :: 'run', 'mesh', 'boundary', 'flow', 'material', &
+    'region', 'charge', 'detonator', 'solid', 'body', 'hole', 'reinforcement', 'heterogeneity', 'clamp', 'coupling', &
+    'gauge', 'output', 'material_test'] !< in deck order
 
 contains
 
@@ -41,7 +42,8 @@ contains
   pure logical function may_repeat(group)
     character(*), intent(in) :: group
     select case (group)
-    case ('material', 'region', 'charge', 'detonator', 'body', 'hole', 'reinforcement', 'clamp', 'gauge', 'material_test')
+    case ('material', 'region', 'charge', 'detonator', 'body', 'hole', 'reinforcement', 'heterogeneity', 'clamp', 'gauge', &
+      'material_test')
       may_repeat = .true.
     case default
       may_repeat = .false.
@@ -53,8 +55,8 @@ contains
     type(deck_type), intent(inout) :: deck
     integer, intent(in) :: count(size(group_names))
     allocate (deck%material(count(5)), deck%region(count(6)), deck%charge(count(7)), deck%detonator(count(8)))
-    allocate (deck%body(count(10)), deck%hole(count(11)), deck%reinforcement(count(12)), deck%clamp(count(13)))
-    allocate (deck%gauge(count(15)), deck%material_test(count(17)))
+    allocate (deck%body(count(10)), deck%hole(count(11)), deck%reinforcement(count(12)), deck%heterogeneity(count(13)))
+    allocate (deck%clamp(count(14)), deck%gauge(count(16)), deck%material_test(count(18)))
   end subroutine allocate_groups
 
   !> How many groups of this name the deck type holds (1 for one that may not be repeated, whether the file has it or not).
@@ -77,6 +79,8 @@ contains
       n = size(deck%hole)
     case ('reinforcement')
       n = size(deck%reinforcement)
+    case ('heterogeneity')
+      n = size(deck%heterogeneity)
     case ('clamp')
       n = size(deck%clamp)
     case ('gauge')
@@ -117,6 +121,8 @@ contains
       call hole_keys(deck%hole(i), table)
     case ('reinforcement')
       call reinforcement_keys(deck%reinforcement(i), table)
+    case ('heterogeneity')
+      call heterogeneity_keys(deck%heterogeneity(i), table)
     case ('clamp')
       call clamp_keys(deck%clamp(i), table)
     case ('coupling')

@@ -14,6 +14,7 @@ module deck_types
   use deck_solid, only: solid_group
   use deck_body, only: body_group, hole_group
   use deck_reinforcement, only: reinforcement_group
+  use deck_heterogeneity, only: heterogeneity_group
   use deck_clamp, only: clamp_group
   use deck_coupling, only: coupling_group
   use deck_gauge, only: gauge_group
@@ -24,7 +25,8 @@ module deck_types
   public :: unset, word_length, path_length
   public :: run_group, mesh_group, boundary_group, flow_group, material_group, region_group, charge_group, &
     detonator_group, solid_group, material_test_group
-  public :: body_group, hole_group, reinforcement_group, clamp_group, coupling_group, gauge_group, output_group
+  public :: body_group, hole_group, reinforcement_group, heterogeneity_group, clamp_group, coupling_group, gauge_group, &
+    output_group
   public :: find_material, find_body
 
   !> Everything that a run is asked to do. All numbers are in the unit system run%units; repeated groups stand in the
@@ -44,6 +46,7 @@ module deck_types
     type(body_group), allocatable :: body(:)
     type(hole_group), allocatable :: hole(:)
     type(reinforcement_group), allocatable :: reinforcement(:)
+    type(heterogeneity_group), allocatable :: heterogeneity(:)
     type(clamp_group), allocatable :: clamp(:)
     type(coupling_group) :: coupling
     type(gauge_group), allocatable :: gauge(:)

@@ -6,6 +6,8 @@ module records
   use deck, only: write_deck
   use errors, only: fatal, exit_done, exit_stopped, exit_failed
   use file_system, only: make_directory
+  use fragment_files, only: write_fragments
+  use fragments, only: find_fragments, fragment_list
   use gauges, only: gauges_type, define_gauges, place_gauges, open_gauges, sample_gauges, close_gauges
   use history, only: open_history, put_history
   use kinds, only: wp, i8
@@ -17,7 +19,8 @@ module records
   use report, only: report_figures, report_pace, start_pace, report_line, peak_memory
   use restart_files, only: newest_restart, forget_restarts
   use scene, only: scene_type
-  use snapshots, only: snapshots_type, start_snapshots, put_flow_snapshot, put_solid_snapshot, put_peak_snapshot
+  use snapshots, only: snapshots_type, start_snapshots, put_flow_snapshot, put_solid_snapshot, put_peak_snapshot, &
+    step_text
   use stopping, only: stop_reason, wall_seconds, go_on, reason_name
   use summary, only: write_summary, summary_figures
   use text, only: str
@@ -34,6 +37,7 @@ module records
     type(series) :: history
     type(snapshots_type) :: snapshots
     type(peak_maps_type) :: peaks
+    type(fragment_list) :: fragments !< of the last snapshot
     type(report_pace) :: pace
     real(wp) :: next_snapshot = huge(1.0_wp) !< time that a step must end at
     real(wp) :: next_restart = huge(1.0_wp)
@@ -180,7 +184,7 @@ contains
     figures%ended_by = 'end time'
     if (records%reason /= go_on) figures%ended_by = trim(reason_name(records%reason))
     if (records%reason == go_on .and. .not. records%reached_end) figures%ended_by = 'option'
-    call write_summary(scene, balance, figures, records%folder//'/summary.json')
+    call write_summary(scene, balance, figures, records%fragments, records%folder//'/summary.json')
     if (scene%flow%burn_total > 0) call say('detonation: '//str(scene%flow%burn_total - balance%unburnt)//' of '// &
       str(scene%flow%burn_total)//' '//trim(records%labels%energy)//' released')
     if (records%reason /= go_on) call say('stopped by '//trim(reason_name(records%reason))//' after writing a restart file')
@@ -221,10 +225,26 @@ contains
                                  flow%name)
         end if
       end if
-      if (scene%has_solid .and. scene%deck%output%solid_snapshots) call put_solid_snapshot(records%snapshots, scene%mesh, &
-        clock%time, clock%step, solid)
+      if (scene%has_solid .and. scene%deck%output%fragments) then
+        call put_fragments(scene, records)
+      else if (scene%has_solid .and. scene%deck%output%solid_snapshots) then
+        call put_solid_snapshot(records%snapshots, scene%mesh, clock%time, clock%step, solid)
+      end if
     end associate
   end subroutine put_snapshot
+
+  !> Counts the fragments, writes their table, and the particles with the fragment that each belongs to.
+  subroutine put_fragments(scene, records)
+    type(scene_type), intent(in) :: scene
+    type(records_type), intent(inout) :: records
+    integer, allocatable :: label(:)
+    associate (output => scene%deck%output, solid => scene%solid, clock => scene%clock)
+      call find_fragments(scene%mesh, solid, output%fragment_reach, output%fragment_damage, records%fragments, label)
+      call write_fragments(records%folder//'/fragments_'//step_text(clock%step)//'.csv', records%fragments%fragment, &
+                           solid%material%name, solid%body_name, records%labels)
+      if (output%solid_snapshots) call put_solid_snapshot(records%snapshots, scene%mesh, clock%time, clock%step, solid, label)
+    end associate
+  end subroutine put_fragments
 
   subroutine put_restart(scene, records)
     type(scene_type), intent(inout) :: scene

@@ -3,6 +3,7 @@ module summary
   use balance, only: balance_type
   use checksum, only: mix_reals, mix_integer, hexadecimal, empty_checksum
   use flow_state, only: repair_names
+  use fragments, only: fragment_list
   use json_files, only: json_file, open_json, close_json, json_begin, json_end, json_put
   use kinds, only: wp, i8
   use parallel, only: n_ranks
@@ -27,10 +28,11 @@ module summary
 contains
 
   !> Writes the file; to be called by all ranks.
-  subroutine write_summary(scene, balance, figures, name)
+  subroutine write_summary(scene, balance, figures, fragments, name)
     type(scene_type), intent(in) :: scene
     type(balance_type), intent(in) :: balance
     type(summary_figures), intent(in) :: figures
+    type(fragment_list), intent(in) :: fragments !< of the last snapshot
     character(*), intent(in) :: name
     type(json_file) :: file
     character(32), allocatable :: phases(:)
@@ -98,6 +100,16 @@ contains
       call json_put(file, 'energy_taken_from_flow', balance%taken_from_flow)
       call json_put(file, 'mass_uncovered', balance%uncovered_mass)
       call json_put(file, 'energy_uncovered', balance%uncovered_energy)
+      call json_end(file)
+    end if
+    if (scene%has_solid .and. scene%deck%output%fragments .and. allocated(fragments%fragment)) then
+      call json_begin(file, 'fragments')
+      call json_put(file, 'count', size(fragments%fragment))
+      call json_put(file, 'mass', sum(fragments%fragment%mass))
+      if (size(fragments%fragment) > 0) call json_put(file, 'largest_mass', fragments%fragment(1)%mass)
+      call json_put(file, 'of_one_particle', count(fragments%fragment%particles == 1))
+      call json_put(file, 'loose_particles', fragments%loose)
+      call json_put(file, 'loose_mass', fragments%loose_mass)
       call json_end(file)
     end if
     if (scene%has_flow) then

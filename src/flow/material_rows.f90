@@ -1,5 +1,5 @@
-!> Building blocks of a stage with N materials, each a loop over a row of cells: fractions and energies of all materials from
-!> the stored state, their transport, and their bounds.
+!> Building blocks of a stage with three or more materials (two: two_material_rows), each a loop over a row of cells: fractions and
+!> energies of all materials from the stored state, their transport, and their bounds.
 module material_rows
   use kinds, only: wp
   use equation_of_state, only: eos_type
@@ -15,26 +15,18 @@ module material_rows
 
 contains
 
-  !> Fractions of all materials. stored: the rows of the state, one for two materials, else all.
+  !> Fractions of three or more materials. stored: the rows of the state.
   pure subroutine all_fractions(n, ld, n_materials, stored, a)
     integer, intent(in) :: n, ld, n_materials
     real(wp), intent(in) :: stored(ld, *)
     real(wp), intent(inout) :: a(ld, n_materials)
     integer :: i, k
-    if (n_materials == 2) then
+    do k = 1, n_materials
       !$omp simd
       do i = 1, n
-        a(i, 1) = stored(i, 1)
-        a(i, 2) = 1 - stored(i, 1)
+        a(i, k) = stored(i, k)
       end do
-    else
-      do k = 1, n_materials
-        !$omp simd
-        do i = 1, n
-          a(i, k) = stored(i, k)
-        end do
-      end do
-    end if
+    end do
   end subroutine all_fractions
 
   !> Energies of all materials per volume of the cell, and their sum. state: rows of the state.
@@ -123,23 +115,18 @@ contains
     end do
   end subroutine advance_total_energy
 
-  !> da/dt + div(a u) - a div u = 0 for the stored fractions; the second of two gets what the first leaves.
+  !> da/dt + div(a u) - a div u = 0 for the fractions of three or more materials.
   !> d_velocity: time step times div u.
   pure subroutine advance_fractions(n, ld, n_materials, part, d, d_velocity, from, start, a)
     integer, intent(in) :: n, ld, n_materials
     real(wp), intent(in) :: part, d(ld, *), d_velocity(n), from(ld, n_materials), start(ld, n_materials)
     real(wp), intent(inout) :: a(ld, n_materials)
     integer :: i, k
-    do k = 1, merge(1, n_materials, n_materials == 2)
+    do k = 1, n_materials
       !$omp simd
       do i = 1, n
         a(i, k) = start(i, k) + part*((from(i, k) - start(i, k)) - (d(i, k) - from(i, k)*d_velocity(i)))
       end do
-    end do
-    if (n_materials > 2) return
-    !$omp simd
-    do i = 1, n
-      a(i, 2) = 1 - a(i, 1)
     end do
   end subroutine advance_fractions
 

@@ -7,6 +7,7 @@ module riemann
   use kinds, only: wp
   use flow_layout, only: layout_type
   use equation_of_state, only: eos_type
+  use riemann_two_materials, only: hllc_two_materials
   implicit none
   private
   public :: hllc_single, hllc_materials, close_faces
@@ -103,23 +104,22 @@ contains
     real(wp), intent(in) :: left(ld, *), c_left(n), right(ld, *), c_right(n)
     real(wp), intent(inout) :: flux(ld, *), wave(ld, 7), partial(ld, n_materials), fractions(ld, n_materials)
     integer :: first, u, e, k
+    if (n_materials == 2) then
+      call hllc_two_materials(n, ld, layout, eos, normal, left, c_left, right, c_right, flux, wave)
+      return
+    end if
     first = layout%momentum_flux - layout%velocity_row
     u = layout%face_velocity_flux
     e = layout%energy_flux
     call contact_fluxes(n, ld, layout%density_row, normal(1), normal(2), normal(3), layout%pressure_row, &
       normal(1) + first, normal(2) + first, normal(3) + first, e, left, c_left, right, c_right, flux, wave)
     call upwind_rows(n, ld, wave, left(1, layout%pressure_row), right(1, layout%pressure_row), flux(1, u))
-    if (n_materials == 2) then
-      call share_between_two(n, ld, wave, left, left(1, layout%first_fraction_row), right, right(1, layout%first_fraction_row), &
-        fractions, flux, flux(1, layout%first_fraction_flux))
-    else
-      call share_mass(n, ld, n_materials, wave, left, right, partial, wave(1, 7), flux)
-      call upwind_fractions(n, ld, n_materials, wave(1, 1), left(1, layout%first_fraction_row), &
-        right(1, layout%first_fraction_row), wave(1, 7), fractions)
-      do k = 1, n_materials
-        call ride_contact(n, flux(1, u), fractions(1, k), flux(1, layout%first_fraction_flux + k - 1))
-      end do
-    end if
+    call share_mass(n, ld, n_materials, wave, left, right, partial, wave(1, 7), flux)
+    call upwind_fractions(n, ld, n_materials, wave(1, 1), left(1, layout%first_fraction_row), &
+      right(1, layout%first_fraction_row), wave(1, 7), fractions)
+    do k = 1, n_materials
+      call ride_contact(n, flux(1, u), fractions(1, k), flux(1, layout%first_fraction_flux + k - 1))
+    end do
     do k = 1, n_materials
       associate (f => layout%first_material_energy_flux + k - 1, row => layout%energy(k))
         if (row == 0) then
@@ -206,29 +206,6 @@ contains
       u_face(i) = wave(i, 3)
     end do
   end subroutine upwind_rows
-
-  !> Mass and fraction fluxes of two materials.
-  pure subroutine share_between_two(n, ld, wave, m_left, a_left, m_right, a_right, fractions, mass, fraction)
-    integer, intent(in) :: n, ld
-    real(wp), intent(in) :: wave(ld, 6), m_left(ld, 2), a_left(n), m_right(ld, 2), a_right(n)
-    real(wp), intent(inout) :: fractions(ld, 2), mass(ld, 2), fraction(n)
-    real(wp) :: m1, m2, a, share
-    logical :: from_left
-    integer :: i
-    !$omp simd private(m1, m2, a, share, from_left)
-    do i = 1, n
-      from_left = wave(i, 1) < 0
-      m1 = merge(m_left(i, 1), m_right(i, 1), from_left)
-      m2 = merge(m_left(i, 2), m_right(i, 2), from_left)
-      a = merge(a_left(i), a_right(i), from_left)
-      share = wave(i, 5)/(m1 + m2)
-      mass(i, 1) = m1*share
-      mass(i, 2) = m2*share
-      fraction(i) = a*wave(i, 3)
-      fractions(i, 1) = a
-      fractions(i, 2) = 1 - a
-    end do
-  end subroutine share_between_two
 
   pure subroutine share_mass(n, ld, n_materials, wave, left, right, partial, total, flux)
     integer, intent(in) :: n, ld, n_materials

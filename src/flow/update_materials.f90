@@ -9,6 +9,7 @@ module update_materials
   use material_rows, only: all_fractions, all_energies, advance_masses, advance_momentum, advance_total_energy, &
     advance_fractions, advance_energies, bound_masses, bound_fractions, bound_energies
   use pressure_relaxation, only: relax_two_gases, relax_materials
+  use two_material_rows, only: transport_two, close_two_gases
   implicit none
   private
   public :: update_row
@@ -45,18 +46,30 @@ contains
     type(row_report), intent(out) :: report
     integer :: nm
     nm = layout%n_materials
-    call energies_of(n, ld, nm, layout, eos, from, s%a_from, s%e_from, s%conserved(1, 6))
-    if (first) then
-      call transport(n, ld, nm, layout, part, d, from, s%a_from, s%e_from, s%conserved(1, 6), &
-        from, s%a_from, s%e_from, s%conserved(1, 6), s%m, s%a, s%e, s%conserved)
+    if (nm == 2) then
+      call transport_two(n, ld, layout, eos, part, trace, floor_pressure, d, from, start, s%m, s%a, s%e, s%conserved, &
+        s%relaxation, report%negative_masses, report%clipped_fractions)
     else
-      call energies_of(n, ld, nm, layout, eos, start, s%a_start, s%e_start, s%conserved(1, 7))
-      call transport(n, ld, nm, layout, part, d, from, s%a_from, s%e_from, s%conserved(1, 6), &
-        start, s%a_start, s%e_start, s%conserved(1, 7), s%m, s%a, s%e, s%conserved)
+      call energies_of(n, ld, nm, layout, eos, from, s%a_from, s%e_from, s%conserved(1, 6))
+      if (first) then
+        call transport(n, ld, nm, layout, part, d, from, s%a_from, s%e_from, s%conserved(1, 6), &
+          from, s%a_from, s%e_from, s%conserved(1, 6), s%m, s%a, s%e, s%conserved)
+      else
+        call energies_of(n, ld, nm, layout, eos, start, s%a_start, s%e_start, s%conserved(1, 7))
+        call transport(n, ld, nm, layout, part, d, from, s%a_from, s%e_from, s%conserved(1, 6), &
+          start, s%a_start, s%e_start, s%conserved(1, 7), s%m, s%a, s%e, s%conserved)
+      end if
+      call bound_masses(n, ld, nm, s%m, s%conserved(1, 5), report%negative_masses)
+      call bound_fractions(n, ld, nm, trace, s%a, report%clipped_fractions)
+      call bound_energies(n, ld, nm, eos, floor_pressure, s%a, s%e)
     end if
-    call bound_masses(n, ld, nm, s%m, s%conserved(1, 5), report%negative_masses)
-    call bound_fractions(n, ld, nm, trace, s%a, report%clipped_fractions)
-    call bound_energies(n, ld, nm, eos, floor_pressure, s%a, s%e)
+    if (nm == 2 .and. all(eos%is_gas)) then
+      call relax_two_gases(n, ld, eos(1), eos(2), start(1, layout%pressure_row), s%e, s%a)
+      call close_two_gases(n, ld, layout, eos, trace, lowest, start(1, layout%pressure_row), s%m, s%a, s%conserved, new, &
+        report%bad)
+      if (report%negative_masses + report%clipped_fractions > 0) report%cell = minloc(s%a(:n, 1), dim=1)
+      return
+    end if
     call relax(n, ld, nm, layout, eos, start, s, report%fallbacks)
     if (report%negative_masses + report%clipped_fractions + report%fallbacks > 0) report%cell = &
       minloc(minval(s%a(:n, :), dim=2), dim=1)
@@ -105,11 +118,6 @@ contains
     integer, intent(out) :: n_fallback
     integer :: n_whole, k
     n_fallback = 0
-    if (n_materials == 2 .and. all(eos%is_gas)) then
-      call relax_two_gases(n, ld, eos(1), eos(2), start(1, layout%pressure_row), s%e, s%a)
-      s%a(:n, 2) = 1 - s%a(:n, 1)
-      return
-    end if
     ! whole vectors only: a remainder would take the scalar exponential, whose last bit may differ
     n_whole = 8*((n + 7)/8)
     s%relaxation(:n, 7) = start(:n, layout%pressure_row)

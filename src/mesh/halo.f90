@@ -193,6 +193,7 @@ contains
           first = merge(n - shared + 1, merge(0, shared, c < 0), c > 0)
           last = merge(n, merge(shared - 1, n - shared, c < 0), c > 0)
           if (any(last < first)) cycle
+          if (.not. any(slab(min(i, 0):max(i, 0), min(j, 0):max(j, 0), min(k, 0):max(k, 0)) > 0)) cycle
           allocate (total(first(1):last(1), n_var, first(2):last(2), first(3):last(3)), source=0.0_wp)
           do dk = min(k, 0), max(k, 0)
             do dj = min(j, 0), max(j, 0)

@@ -99,7 +99,7 @@ contains
     n_starts = size(block%cell_start)
   end function n_starts
 
-  !> Fills blocks(set, local brick); what they held is dropped. Fatal if their number of sets differs from the file's.
+  !> Fills blocks(set, local brick); what they held is dropped. Fatal if their number of sets or columns differs from the file's.
   subroutine restart_get_particles(file, mesh, blocks)
     type(restart_file), intent(inout) :: file
     type(mesh_type), intent(in) :: mesh
@@ -118,6 +118,10 @@ contains
       prefix = 'particles_'//str(set)//'_'
       n_field = 0
       call restart_get(file, prefix//'columns', n_field)
+      if (size(blocks, 2) > 0) then
+        if (size(blocks(set, 1)%f, 2) /= n_field) call fatal('restart file "'//file%name//'": particles of set '//str(set)// &
+          ' have '//str(n_field)//' columns, the deck asks for '//str(size(blocks(set, 1)%f, 2)))
+      end if
       call restart_get_table(file, prefix//'id', counts, integers)
       do b = 1, size(blocks, 2)
         call empty_block(blocks(set, b), product(mesh%brick_cells), n_field)

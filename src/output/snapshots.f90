@@ -17,7 +17,7 @@ module snapshots
   use vtkhdf_points, only: close_point_file, create_point_file, point_file, put_points
   implicit none
   private
-  public :: snapshots_type, start_snapshots, put_flow_snapshot, put_solid_snapshot, put_peak_snapshot
+  public :: snapshots_type, start_snapshots, put_flow_snapshot, put_solid_snapshot, put_peak_snapshot, step_text
 
   !> Where snapshots go and what has been written.
   type :: snapshots_type
@@ -78,13 +78,15 @@ contains
     call add_snapshot(snapshots%flow, name, time)
   end subroutine put_flow_snapshot
 
-  !> Writes the particles. Their pressure is that of the stress, without the bulk viscosity.
-  subroutine put_solid_snapshot(snapshots, mesh, time, step, solid)
+  !> Writes the particles. Their pressure is that of the stress, without the bulk viscosity. fragment: of each particle of this rank,
+  !> brick after brick and set after set.
+  subroutine put_solid_snapshot(snapshots, mesh, time, step, solid, fragment)
     type(snapshots_type), intent(inout) :: snapshots
     type(mesh_type), intent(in) :: mesh
     real(wp), intent(in) :: time
     integer, intent(in) :: step
     type(solid_type), intent(in) :: solid
+    integer, intent(in), optional :: fragment(:)
     type(point_file) :: file
     character(:), allocatable :: name
     real(wp), allocatable :: stress(:)
@@ -107,6 +109,7 @@ contains
       call put_points(file, 'material', '-', numbers(particle, 1), one_byte=solid%n_sets < 256)
       call put_points(file, 'body', '-', numbers(particle, 2))
       call put_points(file, 'id', '-', numbers(particle, 3))
+      if (present(fragment)) call put_points(file, 'fragment', '-', fragment)
     end associate
     call close_point_file(file)
     call add_snapshot(snapshots%solid, name, time)
@@ -191,6 +194,7 @@ contains
     if (unit /= '-') unit = unit//'^3'
   end function volume_unit
 
+  !> A step as it stands in the names of files: six digits or more.
   pure function step_text(step) result(string)
     integer, intent(in) :: step
     character(:), allocatable :: string

@@ -9,7 +9,7 @@ module drucker_prager
   use particle_step, only: step_type
   implicit none
   private
-  public :: make_drucker_prager, drucker_prager_stress
+  public :: make_drucker_prager, drucker_prager_stress, sliding_modulus
 
   type, public :: drucker_prager_type
     real(wp) :: friction = 0 !< M
@@ -85,5 +85,19 @@ contains
       ratio(i) = merge(stress, 1.0_wp, trial(i) > 0)
     end do
   end subroutine return_to_cone
+
+  !> What stands for G in the speed of signals. Where expansion takes pressure off a sliding material its strength goes too, so
+  !> K + 2/3 M K cos a + 4/3 G sin(a)**2 stands for K + 4/3 G, a the angle between the deviator and the direction of the wave.
+  pure real(wp) function sliding_modulus(d, bulk_modulus, shear_modulus) result(modulus)
+    type(drucker_prager_type), intent(in) :: d
+    real(wp), intent(in) :: bulk_modulus, shear_modulus
+    real(wp) :: cosine
+    cosine = 0.25_wp*d%friction*bulk_modulus/shear_modulus
+    if (cosine < 1) then
+      modulus = shear_modulus*(1 + cosine**2)
+    else
+      modulus = 0.5_wp*d%friction*bulk_modulus
+    end if
+  end function sliding_modulus
 
 end module drucker_prager

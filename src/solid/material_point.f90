@@ -29,7 +29,8 @@ contains
     allocate (point%f(1, material%n_field), source=0.0_wp)
     point%f(1, at_volume) = 1
     point%f(1, at_mass) = material%density
-    if (material%at_factor > 0) point%f(1, material%at_factor) = 1
+    if (material%at_strength > 0) point%f(1, material%at_strength) = 1
+    if (material%at_stiffness > 0) point%f(1, material%at_stiffness) = 1
     if (material%model /= model_fluid) return
     point%f(1, at_energy) = material%density*fluid_energy(material%eos, material%density, 0.0_wp)
     point%f(1, at_stress:at_stress + 2) = -fluid_rest_pressure(material%eos, material%density, &

@@ -6,7 +6,7 @@ module particle_fluid
   use cell_functions, only: chunk
   implicit none
   private
-  public :: fluid_pressure, fluid_sound_speed, fluid_energy, fluid_rest_pressure
+  public :: fluid_pressure, fluid_sound_speed, fluid_energy, fluid_energy_at, fluid_rest_pressure
 
 contains
 
@@ -50,14 +50,21 @@ contains
   pure real(wp) function fluid_energy(eos, density, pressure) result(energy)
     type(eos_type), intent(in) :: eos
     real(wp), intent(in) :: density, pressure
-    real(wp) :: f(1)
     if (eos%kind /= is_jwl) then
-      call reference_pressure(1, eos, [density], [1.0_wp], f)
-      energy = (pressure - f(1))/(eos%grueneisen*density)
+      energy = fluid_energy_at(eos, density, pressure)
     else
       energy = eos%jwl%energy_per_volume/eos%jwl%density
     end if
   end function fluid_energy
+
+  !> Energy per mass at a density and a pressure.
+  pure real(wp) function fluid_energy_at(eos, density, pressure) result(energy)
+    type(eos_type), intent(in) :: eos
+    real(wp), intent(in) :: density, pressure
+    real(wp) :: f(1)
+    call reference_pressure(1, eos, [density], [1.0_wp], f)
+    energy = (pressure - f(1))/(eos%grueneisen*density)
+  end function fluid_energy_at
 
   !> Pressure at a density and an energy per mass.
   pure real(wp) function fluid_rest_pressure(eos, density, energy) result(pressure)

@@ -30,7 +30,8 @@ module particle_generation
     type(shape_type), allocatable :: cut(:)
     type(lattice_type) :: lattice
     integer :: set = 0, body = 0
-    real(wp) :: velocity(3) = 0
+    real(wp) :: velocity(3) = 0 !< at the origin of the domain's coordinates
+    real(wp) :: velocity_gradient(3) = 0 !< diagonal of the gradient
     real(wp) :: pressure = 0 !< at the start
     real(wp) :: energy = 0 !< per mass, at the start
     integer :: count = 0 !< particles made
@@ -252,7 +253,7 @@ contains
     real(wp) :: fields(solid%material(piece%set)%n_field)
     fields = 0
     fields(at_position:at_position + 2) = point
-    fields(at_velocity:at_velocity + 2) = merge(piece%velocity, 0.0_wp, mesh%active)
+    fields(at_velocity:at_velocity + 2) = merge(piece%velocity + piece%velocity_gradient*point, 0.0_wp, mesh%active)
     fields(at_volume) = volume
     fields(at_mass) = solid%material(piece%set)%density*volume
     fields(at_stress:at_stress + 2) = -piece%pressure

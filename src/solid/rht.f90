@@ -7,7 +7,7 @@
 !>       = F fs/Q1 - 3 p* (1/Q2 - fs/(Q1 ft))         0 > 3 p* > 3 p_t
 !> times R3 of Willam & Warnke between the meridians, ratio Q = Q0 + B p*; F the rate factor, Q1 = R3(30 degrees, Q0), Q2 = Q0. The
 !> elastic surface is g s_f(p*/g), with g rising from Fe Fc (elastic limits gc, gt; cap of the pores) to 1 while the
-!> plastic strain rises to e_h; then damage leads it to the residual surface Af p*^nf.
+!> plastic strain rises to e_h = s_f (1 - Fe Fc)/(3 xi G); then damage leads it to the residual surface Af p*^nf.
 !> Rate factor F = (rate/static)^b, static 3e-5/s in compression and 3e-6/s in tension, between them along the pressure.
 !>
 !> Here the rate is that of the whole deviatoric strain. Damage under tension may follow from the dissipated work (crack_band);
@@ -179,18 +179,21 @@ contains
     real(wp), intent(inout) :: closed(n)
     real(wp), intent(out) :: pressure(n), crush(n)
     real(wp), parameter :: smallest = 1e-12_wp
-    real(wp) :: thermal(chunk), change(chunk), x(chunk), excess(chunk), rest, range, power, alpha, eta, solid, slope, coupling, of_x
+    real(wp), dimension(chunk) :: thermal, change, x, most, excess
+    real(wp) :: rest, range, power, alpha, eta, solid, slope, coupling, of_x, tolerance
     integer :: i, iteration
     rest = c%alpha
     range = c%p_comp - c%p_crush
+    tolerance = 1e-9_wp*c%p_crush
     power = c%n_comp
     !$omp simd
     do i = 1, n
       change(i) = 0.5_wp*(old_volume(i) - volume(i))/volume(i)
       thermal(i) = energy(i)/volume(i) + change(i)*(old_pressure(i) + 2*viscosity(i))
-      x(i) = exp(log(max(1 - closed(i)/max(rest - 1, smallest), smallest))/power)
+      x(i) = exp(log(max(1 - closed(i)/(rest - 1), smallest))/power)
+      most(i) = x(i)
     end do
-    do iteration = 0, 6
+    do iteration = 0, 8
       !$omp simd private(alpha, eta, solid, slope, coupling)
       do i = 1, n
         alpha = 1 + (rest - 1)*exp(power*log(x(i)))
@@ -200,9 +203,9 @@ contains
         pressure(i) = (solid + coupling*thermal(i))/(1 - coupling*change(i))
         crush(i) = c%p_comp - range*x(i)
         excess(i) = pressure(i) - crush(i)
-        closed(i) = max(closed(i), rest - alpha)
       end do
-      if (.not. any(excess(:n) > 1e-9_wp*range) .or. iteration == 6) exit
+      if (iteration == 8) exit
+      if (.not. any(excess(:n) > tolerance .or. (excess(:n) < -tolerance .and. x(:n) < most(:n)))) exit
       !$omp simd private(alpha, eta, solid, slope, of_x)
       do i = 1, n
         alpha = 1 + (rest - 1)*exp(power*log(x(i)))
@@ -210,8 +213,12 @@ contains
         solid = eta*(c%a1 + eta*(c%a2 + eta*c%a3))/alpha
         slope = (c%a1 + eta*(2*c%a2 + eta*3*c%a3))*(1 + compression(i))/rest/alpha - solid/alpha
         of_x = slope*(alpha - 1)*power/x(i) + range
-        x(i) = merge(max(x(i) - excess(i)/of_x, smallest), x(i), excess(i) > 0)
+        x(i) = max(min(x(i) - excess(i)/of_x, most(i)), smallest)
       end do
+    end do
+    !$omp simd
+    do i = 1, n
+      closed(i) = max(closed(i), (rest - 1)*(1 - exp(power*log(x(i)))))
     end do
   end subroutine close_pores
 
@@ -225,7 +232,7 @@ contains
     real(wp), intent(inout), dimension(n) :: plastic_strain, damage, plastic_work
     real(wp), intent(out) :: ratio(n)
     real(wp), parameter :: smallest = 1e-12_wp
-    real(wp), dimension(chunk) :: elastic, surface, scaled, section, residual, full
+    real(wp), dimension(chunk) :: elastic, surface, scaled, section, residual, full, one
     real(wp) :: fc, per_fc, ft, q0, qb, gc, gt, af, nf, d1, d2, ef_min, p_t, xi_shear, by_shear
     real(wp) :: p, f_c, f_t, low, high, cap, p_u, p_0, q, x, root, hardening, strength, increment, fracture, sound, work_hard
     logical :: by_work
@@ -253,8 +260,9 @@ contains
       root = sqrt(max(4*(1 - q*q)*x*x + 5*q*q - 4*q, 0.0_wp))
       section(i) = (2*(1 - q*q)*x + (2*q - 1)*root)/(4*(1 - q*q)*x*x + (1 - 2*q)*(1 - 2*q))
     end do
-    call failure_surface(n, c, pressure, elastic, factor_c, factor_t, full)
-    ! hardening: the strain at which it is over, from the strength there, and how far it has come
+    one(:n) = 1
+    call failure_surface(n, c, pressure, one, factor_c, factor_t, full)
+    ! hardening: the plastic strain from the elastic to the failure surface, and how far it has come
     !$omp simd private(hardening)
     do i = 1, n
       hardening = full(i)*section(i)*fc*(1 - elastic(i))/xi_shear

@@ -37,13 +37,15 @@ module solid_material
     integer :: n_field = n_fields_basic !< columns that its particles have
     integer :: pressure = pressure_linear !< pressure_*
     integer :: at_own = n_fields_basic !< first of the columns that the model has for itself
-    integer :: at_factor = 0 !< column of a factor on strength and stiffness of each particle; 0: none
+    integer :: at_strength = 0 !< column of the factor on the strength; 0: none
+    integer :: at_stiffness = 0 !< column of the factor on the elastic moduli; 0: none
     real(wp) :: density = 0 !< at rest
     real(wp) :: shear_modulus = 0, bulk_modulus = 0
     real(wp) :: yield_stress = 0, hardening_modulus = 0
     real(wp) :: ultimate_stress = huge(1.0_wp) !< the yield stress rises no further
     real(wp) :: failure_strain = huge(1.0_wp) !< plastic strain at failure
     real(wp) :: failure_damage = huge(1.0_wp) !< damage from which a particle is failed: 1, or huge where none fails
+    real(wp) :: fracture_energy = 0 !< of a metal, per area: dissipated from failure_strain on; 0: fails at once
     logical :: keeps_friction = .false. !< failed particles still bear shear under pressure
     real(wp) :: tensile_limit = huge(1.0_wp) !< largest tensile pressure
     logical :: tension_fails = .false. !< a particle fails there; otherwise its pressure stays there
@@ -173,6 +175,7 @@ contains
       m%jc_damage = johnson_cook_damage_type(.true., group%jc_d1, group%jc_d2, group%jc_d3, group%jc_d4, group%jc_d5)
     else
       call fail_by_strain(group, m)
+      if (group%failure == 'fracture_energy') m%fracture_energy = group%fracture_energy
     end if
     if (m%model /= model_johnson_cook .and. m%model /= model_simplified_johnson_cook) return
     m%jc_a = group%jc_a

@@ -2,9 +2,10 @@
 module solid_setup
   use deck_types, only: deck_type, body_group, reinforcement_group, unset, find_material, find_body, word_length
   use errors, only: fatal, exit_bad_input
+  use heterogeneity, only: claim_factors, set_factors
   use kinds, only: wp
   use mesh, only: mesh_type
-  use particle_fluid, only: fluid_energy, fluid_rest_pressure
+  use particle_fluid, only: fluid_energy, fluid_energy_at, fluid_rest_pressure
   use particle_generation, only: piece_type, body_lattice, bar_lattice, generate_particles
   use particles, only: allocate_particles
   use solid_material, only: make_solid_material, claim_columns, model_fluid
@@ -26,16 +27,19 @@ contains
     type(solid_type), intent(out) :: solid
     type(piece_type), allocatable, intent(out) :: pieces(:)
     integer, allocatable :: used(:)
+    integer :: i
     solid%present = size(deck%body) > 0
     solid%cfl = deck%solid%cfl
     solid%gravity = merge(deck%solid%gravity, 0.0_wp, mesh%active)
     call choose_numerics(mesh, deck, solid)
     call choose_materials(deck, solid, used)
+    call claim_factors(deck, used, solid)
     call number_bodies(deck, solid)
     call set_supports(mesh, deck, solid)
     call allocate_solid(mesh, solid)
     call make_pieces(mesh, deck, used, solid, pieces)
     call generate_particles(mesh, solid, pieces)
+    call set_factors(mesh, deck, used, [(body_number(deck, deck%body(i)%name), i=1, size(deck%body))], pieces, solid)
   end subroutine setup_solid
 
   !> Empty particle blocks, books at zero, held nodes: all that follows from the mesh, the materials and the supports.
@@ -198,6 +202,7 @@ contains
     type(piece_type), allocatable, intent(out) :: pieces(:)
     type(shape_type), allocatable :: bar(:), cut(:), shape(:)
     integer, allocatable :: owner(:), group(:)
+    real(wp) :: pressure
     integer :: i, j, n
     call list_bars(mesh, deck, bar, owner, group)
     allocate (shape(size(deck%body)), pieces(size(deck%body) + size(bar)))
@@ -224,6 +229,7 @@ contains
         piece%set = findloc(used, find_material(deck, body%material), dim=1)
         piece%body = body_number(deck, body%name)
         piece%velocity = body%velocity
+        piece%velocity_gradient = body%velocity_gradient
       end associate
     end do
     n = size(deck%body)
@@ -240,10 +246,13 @@ contains
         piece%set = findloc(used, find_material(deck, bars%material), dim=1)
         piece%body = body_number(deck, body%name)
         piece%velocity = body%velocity
+        piece%velocity_gradient = body%velocity_gradient
       end associate
     end do
     do i = 1, size(pieces)
-      call set_fluid_state(deck, solid, pieces(i))
+      pressure = unset
+      if (i <= size(deck%body)) pressure = deck%body(i)%pressure
+      call set_fluid_state(deck, solid, pressure, pieces(i))
     end do
   end subroutine make_pieces
 
@@ -270,10 +279,12 @@ contains
     end do
   end subroutine list_bars
 
-  !> Fluids start at the energy of the explosive, or at the deck's ambient pressure.
-  subroutine set_fluid_state(deck, solid, piece)
+  !> Fluids start at the pressure that is asked of them; where that is unset, at the energy of the explosive, or at the deck's
+  !> ambient pressure.
+  subroutine set_fluid_state(deck, solid, pressure, piece)
     type(deck_type), intent(in) :: deck
     type(solid_type), intent(in) :: solid
+    real(wp), intent(in) :: pressure
     type(piece_type), intent(inout) :: piece
     real(wp) :: ambient
     associate (m => solid%material(piece%set))
@@ -281,6 +292,7 @@ contains
       ambient = 0
       if (deck%flow%ambient_pressure > unset) ambient = deck%flow%ambient_pressure
       piece%energy = fluid_energy(m%eos, m%density, ambient)
+      if (pressure > unset) piece%energy = fluid_energy_at(m%eos, m%density, pressure)
       piece%pressure = fluid_rest_pressure(m%eos, m%density, piece%energy)
     end associate
   end subroutine set_fluid_state

@@ -262,6 +262,7 @@ contains
     integer :: i, j, k
     do k = 1, size(mass, 3)
       do j = 1, size(mass, 2)
+        if (.not. any(mass(:, j, k) > 0)) cycle ! nothing to divide
         !$omp simd private(inverse)
         do i = 1, size(mass, 1)
           inverse = merge(1/max(mass(i, j, k), tiny(1.0_wp)), 0.0_wp, mass(i, j, k) > 0)
@@ -281,6 +282,7 @@ contains
     integer :: i, j, k, d
     do k = 1, size(node, 4)
       do j = 1, size(node, 3)
+        if (.not. any(node(:, 1, j, k) > 0)) cycle
         do d = 1, 3
           weight = dt*gravity(d)
           !$omp simd private(inverse)
@@ -296,7 +298,12 @@ contains
   pure subroutine add_change(node, change)
     real(wp), intent(inout) :: node(:, :, :, :)
     real(wp), intent(in) :: change(:, :, :, :)
-    node(:, 2:4, :, :) = node(:, 2:4, :, :) + change
+    integer :: j, k
+    do k = 1, size(node, 4)
+      do j = 1, size(node, 3)
+        if (any(node(:, 1, j, k) > 0)) node(:, 2:4, j, k) = node(:, 2:4, j, k) + change(:, :, j, k)
+      end do
+    end do
   end subroutine add_change
 
   !> Impulses of the supports and of gravity in this step, from this brick's part of the node forces and masses.

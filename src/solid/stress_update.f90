@@ -6,7 +6,8 @@
 module stress_update
   use cell_functions, only: chunk
   use constants, only: third
-  use drucker_prager, only: drucker_prager_stress
+  use crack_band, only: soften
+  use drucker_prager, only: drucker_prager_stress, sliding_modulus
   use elastic, only: elastic_pressure, elastic_ratio, limit_tension
   use hjc, only: hjc_stress, hjc_modulus
   use johnson_cook, only: johnson_cook_yield
@@ -25,12 +26,10 @@ module stress_update
   use solid_material, only: solid_material_type, model_elastic, model_perfect_plasticity, model_linear_hardening, &
     model_johnson_cook, model_simplified_johnson_cook, model_hjc, model_rht, model_drucker_prager, model_neo_hookean, model_fluid, &
     pressure_eos
+  use strength_factors, only: factors_of, to_reference, from_reference, reference_compression
   implicit none
   private
   public :: update_stress, signal_speeds
-
-  integer, parameter :: scaled_columns(9) = [at_stress, at_stress + 1, at_stress + 2, at_stress + 3, at_stress + 4, at_stress + 5, &
-    at_energy, at_viscosity, at_plastic_work] !< what is proportional to the stress
 
 contains
 
@@ -43,9 +42,9 @@ contains
     real(wp), intent(inout) :: f(capacity, n_field)
     real(wp), intent(in) :: gradient(chunk, 9)
     type(step_type) :: s
+    real(wp), dimension(chunk) :: strength, stiffness, work
     s%dt = dt
     s%length = length
-    if (m%at_factor > 0) call unscale(n, capacity, n_field, f, first, m%at_factor)
     call sound_at_start(m, n, capacity, n_field, f, first, s)
     call strain_and_rotate(n, m%shear_modulus, m%density, gradient, f(first, at_stress), f(first, at_stress + 1), &
       f(first, at_stress + 2), f(first, at_stress + 3), f(first, at_stress + 4), f(first, at_stress + 5), f(first, at_mass), &
@@ -53,6 +52,12 @@ contains
       s%compression)
     call bulk_viscosity(n, dt, length, m%linear_viscosity, m%quadratic_viscosity, s%speed, f(first, at_mass), s%old_volume, &
       s%volume, s%viscosity)
+    if (m%at_strength > 0) then
+      call factors_of(n, capacity, f, first, m%at_strength, m%at_stiffness, strength, stiffness)
+      call to_reference(n, strength, stiffness, m%shear_modulus, gradient, s%deviator, s%trial, s%power, s%shear, s%strain, &
+        s%old_pressure, s%compression, s%viscosity, f(first, at_energy), f(first, at_plastic_strain), &
+        f(first, at_plastic_work), work)
+    end if
     select case (m%model)
     case (model_neo_hookean)
       call neo_hookean_stress(n, m%bulk_modulus, m%shear_modulus, m%density, gradient, f(first, at_mass), s%old_volume, s%volume, &
@@ -76,11 +81,12 @@ contains
       call metal_deviator(m, n, f(first, at_mass), f(first, at_plastic_strain), f(first, at_damage), f(first, at_plastic_work), s)
       call metal_pressure(m, n, f(first, at_mass), f(first, at_energy), f(first, at_damage), s)
     end select
+    if (m%at_strength > 0) call from_reference(n, strength, stiffness, work, s%deviator, s%power, s%shear, s%old_pressure, &
+      s%viscosity, s%pressure, f(first, at_energy), f(first, at_plastic_strain), f(first, at_plastic_work))
     if (m%model /= model_neo_hookean) call set_stress(n, m%shear_modulus, s%deviator, s%ratio, s%pressure, s%power, s%shear, &
       s%old_pressure, s%viscosity, s%volume, s%middle, f(first, at_volume), f(first, at_energy), f(first, at_viscosity), &
       f(first, at_stress), f(first, at_stress + 1), f(first, at_stress + 2), f(first, at_stress + 3), f(first, at_stress + 4), &
       f(first, at_stress + 5))
-    if (m%at_factor > 0) call rescale(n, capacity, n_field, f, first, m%at_factor)
   end subroutine update_stress
 
   !> Longitudinal sound speed before the step, for the bulk viscosity: that at rest, except where an equation of state gives more.
@@ -110,7 +116,8 @@ contains
     real(wp), intent(in) :: mass(n)
     real(wp), intent(inout) :: plastic_strain(n), damage(n), plastic_work(n)
     type(step_type), intent(inout) :: s
-    real(wp) :: yield(chunk), before(chunk), dt_rate
+    real(wp) :: yield(chunk), before(chunk), dt_rate, failure_strain
+    integer :: i
     dt_rate = s%dt*m%reference_strain_rate
     select case (m%model)
     case (model_elastic)
@@ -127,10 +134,25 @@ contains
         m%reference_temperature, m%melt_temperature, dt_rate, s%strain, plastic_strain, plastic_work, mass, yield)
     end select
     if (m%jc_damage%active) before(:n) = plastic_strain
-    call return_to_yield(n, m%shear_modulus, m%hardening_modulus, m%ultimate_stress, m%failure_strain, m%failure_damage, yield, &
+    failure_strain = m%failure_strain
+    if (m%fracture_energy > 0) then
+      failure_strain = huge(failure_strain)
+      before(:n) = plastic_work
+      !$omp simd
+      do i = 1, n
+        yield(i) = yield(i)*(1 - damage(i))
+      end do
+    end if
+    call return_to_yield(n, m%shear_modulus, m%hardening_modulus, m%ultimate_stress, failure_strain, m%failure_damage, yield, &
       s%trial, s%middle, plastic_strain, damage, plastic_work, s%ratio)
     if (m%jc_damage%active) call accumulate_damage(n, m%jc_damage, dt_rate, s%strain, before, plastic_strain, plastic_work, mass, &
       s%old_pressure, s%trial, s%ratio, damage)
+    if (m%fracture_energy > 0) then
+      do i = 1, n
+        yield(i) = merge((plastic_work(i) - before(i))/s%middle(i), 0.0_wp, plastic_strain(i) > m%failure_strain)
+      end do
+      call soften(n, m%fracture_energy/s%length, yield, damage)
+    end if
   end subroutine metal_deviator
 
   !> Pressure of a metal and its limit of tension; after the deviator, whose work heats.
@@ -155,62 +177,33 @@ contains
     call limit_tension(n, m%tensile_limit, m%tension_fails, m%failure_damage, damage, s%pressure)
   end subroutine metal_pressure
 
-  !> A particle whose strength and stiffness are k times those of its material has k times the stresses and energies on the same
-  !> path, so the material sees them divided by k.
-  pure subroutine unscale(n, capacity, n_field, f, first, at_factor)
-    integer, intent(in) :: n, capacity, n_field, first, at_factor
-    real(wp), intent(inout) :: f(capacity, n_field)
-    real(wp) :: inverse(chunk)
-    integer :: i, column
-    do i = 1, n
-      inverse(i) = 1/f(first + i - 1, at_factor)
-    end do
-    do column = 1, size(scaled_columns)
-      !$omp simd
-      do i = 1, n
-        f(first + i - 1, scaled_columns(column)) = f(first + i - 1, scaled_columns(column))*inverse(i)
-      end do
-    end do
-  end subroutine unscale
-
-  pure subroutine rescale(n, capacity, n_field, f, first, at_factor)
-    integer, intent(in) :: n, capacity, n_field, first, at_factor
-    real(wp), intent(inout) :: f(capacity, n_field)
-    integer :: i, column
-    do column = 1, size(scaled_columns)
-      !$omp simd
-      do i = 1, n
-        f(first + i - 1, scaled_columns(column)) = f(first + i - 1, scaled_columns(column))*f(first + i - 1, at_factor)
-      end do
-    end do
-  end subroutine rescale
-
   !> Signal speed c + |v| of particles first..first+n-1; the bulk viscosity q stiffens by 4 q/r.
   pure subroutine signal_speeds(m, n, capacity, n_field, f, first, signal)
     type(solid_material_type), intent(in) :: m
     integer, intent(in) :: n, capacity, n_field, first
     real(wp), intent(in) :: f(capacity, n_field)
     real(wp), intent(out) :: signal(chunk)
-    real(wp), dimension(chunk) :: modulus, compression, factor
-    real(wp) :: failure_damage
+    real(wp), dimension(chunk) :: modulus, compression, strength, factor, energy
+    real(wp) :: failure_damage, shear
     integer :: i
     do i = 1, n
       compression(i) = f(first + i - 1, at_mass)/(m%density*f(first + i - 1, at_volume)) - 1
     end do
-    factor(:n) = 1
-    if (m%at_factor > 0) factor(:n) = f(first:first + n - 1, m%at_factor)
+    call factors_of(n, capacity, f, first, m%at_strength, m%at_stiffness, strength, factor)
+    if (m%at_strength > 0) call reference_compression(n, strength, factor, compression)
+    energy(:n) = f(first:first + n - 1, at_energy)/strength(:n)
     select case (m%model)
     case (model_hjc)
       call hjc_modulus(n, m%hjc, compression, f(first, m%at_own), modulus)
     case (model_rht)
-      call rht_modulus(n, m%rht, compression, f(first, at_energy), f(first, at_volume), f(first, m%at_own), modulus)
+      call rht_modulus(n, m%rht, compression, energy, f(first, at_volume), f(first, m%at_own), modulus)
     case (model_neo_hookean)
       call neo_hookean_modulus(n, m%bulk_modulus, m%shear_modulus, m%density, f(first, at_mass), f(first, at_volume), &
         f(first, m%at_own), f(first, m%at_own + 1), f(first, m%at_own + 2), modulus)
     case default
       modulus(:n) = m%bulk_modulus
       if (m%pressure == pressure_eos) then
-        call fluid_sound_speed(n, m%eos, f(first, at_mass), f(first, at_volume), f(first, at_energy), signal)
+        call fluid_sound_speed(n, m%eos, f(first, at_mass), f(first, at_volume), energy, signal)
         !$omp simd
         do i = 1, n
           modulus(i) = signal(i)*signal(i)*m%density
@@ -219,7 +212,9 @@ contains
     end select
     failure_damage = m%failure_damage
     if (m%keeps_friction) failure_damage = huge(1.0_wp)
-    call add_speeds(n, m%density, m%shear_modulus, failure_damage, factor, modulus, f(first, at_mass), f(first, at_volume), &
+    shear = m%shear_modulus
+    if (m%model == model_drucker_prager) shear = sliding_modulus(m%drucker_prager, m%bulk_modulus, m%shear_modulus)
+    call add_speeds(n, m%density, shear, failure_damage, factor, modulus, f(first, at_mass), f(first, at_volume), &
       f(first, at_viscosity), f(first, at_damage), f(first, at_velocity), f(first, at_velocity + 1), f(first, &
         at_velocity + 2), signal)
   end subroutine signal_speeds

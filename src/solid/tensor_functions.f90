@@ -16,7 +16,7 @@ module tensor_functions
   use kinds, only: wp
   implicit none
   private
-  public :: functions_of, make_lanes, tensor_weights, affine_weights, control_point
+  public :: functions_of, make_lanes, tensor_bumps, tensor_weights, affine_weights, control_point
 
   integer, parameter, public :: most_lanes = 12 !< products of the functions along y and z, padded to whole vectors
 
@@ -30,9 +30,8 @@ module tensor_functions
     real(wp) :: least = 0, most = 1 !< t is kept between these
   end type line_functions
 
-  !> Products of the functions along y and z, y fastest.
+  !> Products of the functions along y and z, y fastest; the rest of the lanes are empty.
   type, public :: lane_functions
-    integer :: n = 4 !< lanes, of which the last ones may be empty
     real(wp) :: y(most_lanes, 0:2) = 0, z(most_lanes, 0:2) = 0 !< polynomials as in line_functions
     real(wp) :: at_y(most_lanes) = 0, at_z(most_lanes) = 0
   end type lane_functions
@@ -108,8 +107,32 @@ contains
         lanes%at_z(l) = z%at(c)
       end do
     end do
-    lanes%n = 4*((l + 3)/4)
   end subroutine make_lanes
+
+  !> What the functions along one direction are made of, for n particles: cell coordinates t, bumps u and v, and their derivatives.
+  pure subroutine tensor_bumps(functions, n, x, t, bump, slope)
+    type(line_functions), intent(in) :: functions
+    integer, intent(in) :: n
+    real(wp), intent(in) :: x(n)
+    real(wp), intent(out) :: t(n), bump(piece, 2), slope(piece, 2)
+    real(wp) :: linear, quadratic, lower, inverse, origin, least, most
+    integer :: q
+    linear = functions%linear
+    quadratic = functions%quadratic
+    lower = functions%lower
+    inverse = functions%inverse
+    origin = functions%origin
+    least = functions%least
+    most = functions%most
+    !$omp simd
+    do q = 1, n
+      t(q) = min(max((x(q) - lower)*inverse - origin, least), most)
+      bump(q, 1) = (1 - t(q))*(linear + quadratic*(1 - t(q)))
+      bump(q, 2) = t(q)*(linear + quadratic*t(q))
+      slope(q, 1) = -(linear + 2*quadratic*(1 - t(q)))*inverse
+      slope(q, 2) = (linear + 2*quadratic*t(q))*inverse
+    end do
+  end subroutine tensor_bumps
 
   !> Functions and derivatives along one direction for n particles; zero beyond the cell's number of functions.
   pure subroutine tensor_weights(functions, n, x, w, slope)

@@ -1,14 +1,15 @@
 !> Particles to nodes by any functions that are products of lines (module tensor_functions), with or without an affine velocity.
 !>
-!> Inner loops run over the products of the functions along y and z (lanes); those along x stand outside.
+!> Inner loops run over the products of the functions along y and z (lanes); those along x stand outside. The sums of a row of cells
+!> are kept by lane and x until the row is done, so nodes are added to once per row.
 module tensor_scatter
-  use cell_functions, only: cell_frame
+  use cell_functions, only: cell_frame, piece
   use kinds, only: wp
   use particles, only: at_position, at_velocity, at_mass, at_volume, at_stress, at_viscosity
-  use tensor_functions, only: functions_of, make_lanes, line_functions, lane_functions, most_lanes
+  use tensor_functions, only: functions_of, make_lanes, tensor_weights, tensor_bumps, line_functions, lane_functions, most_lanes
   implicit none
   private
-  public :: scatter_by_tensor, add_momentum_by_tensor, sum_tensor
+  public :: scatter_by_tensor, add_momentum_by_tensor, add_row, sum_tensor
 
   integer, parameter :: sxx = at_stress, syy = at_stress + 1, szz = at_stress + 2
   integer, parameter :: syz = at_stress + 3, sxz = at_stress + 4, sxy = at_stress + 5
@@ -24,197 +25,241 @@ contains
     real(wp), intent(in) :: f(capacity, n_field)
     real(wp), intent(inout) :: node(0:frame%last(1), 4, 0:frame%last(2), 0:frame%last(3))
     real(wp), intent(inout) :: force(0:frame%last(1), 3, 0:frame%last(2), 0:frame%last(3))
-    type(line_functions) :: x, y, z
+    type(line_functions) :: x(frame%n(1)), y, z
     type(lane_functions) :: lanes
-    real(wp) :: momentum(most_lanes, 4, 3), push(most_lanes, 3, 3)
+    real(wp) :: momentum(most_lanes, 4, 0:frame%last(1) + 2), push(most_lanes, 3, 0:frame%last(1) + 2)
+    real(wp) :: w(piece, 3), slope_x(piece, 3), t(piece), bump(piece, 2, 2), slope(piece, 2, 2)
     integer :: i, j, k, cell, first, n
+    do i = 1, frame%n(1)
+      x(i) = functions_of(frame, 1, i)
+    end do
     cell = 0
     do k = 1, frame%n(3)
       z = functions_of(frame, 3, k)
       do j = 1, frame%n(2)
+        if (cell_start(cell + 1) == cell_start(cell + frame%n(1) + 1)) then
+          cell = cell + frame%n(1)
+          cycle
+        end if
         y = functions_of(frame, 2, j)
         call make_lanes(y, z, lanes)
+        momentum = 0
+        push = 0
         do i = 1, frame%n(1)
           cell = cell + 1
-          first = cell_start(cell)
-          n = cell_start(cell + 1) - first
-          if (n == 0) cycle
-          x = functions_of(frame, 1, i)
-          call sum_momentum(n, x, y, z, lanes, affine, capacity, f(first, 1), momentum)
-          call sum_force(n, x, y, z, lanes, capacity, f(first, 1), push)
-          call add_to_nodes(frame%last, 4, 0, 4, x%n, y%n, z%n, momentum, i, j, k, node)
-          call add_to_nodes(frame%last, 3, 0, 3, x%n, y%n, z%n, push, i, j, k, force)
+          do first = cell_start(cell), cell_start(cell + 1) - 1, piece
+            n = min(piece, cell_start(cell + 1) - first)
+            call tensor_weights(x(i), n, f(first, at_position), w, slope_x)
+            call tensor_bumps(y, n, f(first, at_position + 1), t, bump(:, :, 1), slope(:, :, 1))
+            call tensor_bumps(z, n, f(first, at_position + 2), t, bump(:, :, 2), slope(:, :, 2))
+            call sum_cell(n, x(i), y, z, lanes, w, bump, affine, capacity, f(first, 1), momentum(1, 1, i - 1))
+            call sum_force(n, x(i)%n, lanes, w, slope_x, bump, slope, capacity, f(first, 1), push(1, 1, i - 1))
+          end do
         end do
+        call add_row(frame%last, 4, 0, 4, y%n, z%n, momentum, j, k, node)
+        call add_row(frame%last, 3, 0, 3, y%n, z%n, push, j, k, force)
       end do
     end do
   end subroutine scatter_by_tensor
 
-  !> Adds the momenta of the n particles of a cell to the nodes. f: their first row.
-  pure subroutine add_momentum_by_tensor(frame, x, y, z, lanes, n, affine, capacity, f, i, j, k, node)
-    type(cell_frame), intent(in) :: frame
+  !> Adds masses and momenta of n <= piece particles of a cell to the sums of its row. f: their first row; w: their functions
+  !> along x.
+  pure subroutine add_momentum_by_tensor(x, y, z, lanes, n, w, affine, capacity, f, row)
     type(line_functions), intent(in) :: x, y, z
     type(lane_functions), intent(in) :: lanes
-    integer, intent(in) :: n, affine, capacity, i, j, k
-    real(wp), intent(in) :: f(capacity, *)
-    real(wp), intent(inout) :: node(0:frame%last(1), 3, 0:frame%last(2), 0:frame%last(3))
-    real(wp) :: momentum(most_lanes, 4, 3)
-    call sum_momentum(n, x, y, z, lanes, affine, capacity, f, momentum)
-    call add_to_nodes(frame%last, 3, 1, 4, x%n, y%n, z%n, momentum, i, j, k, node)
+    integer, intent(in) :: n, affine, capacity
+    real(wp), intent(in) :: w(piece, 3), f(capacity, *)
+    real(wp), intent(inout) :: row(most_lanes, 4, 3)
+    real(wp) :: t(piece), bump(piece, 2, 2), unused(piece, 2)
+    call tensor_bumps(y, n, f(1, at_position + 1), t, bump(:, :, 1), unused)
+    call tensor_bumps(z, n, f(1, at_position + 2), t, bump(:, :, 2), unused)
+    call sum_cell(n, x, y, z, lanes, w, bump, affine, capacity, f, row)
   end subroutine add_momentum_by_tensor
 
-  !> Adds columns skip+1..n_part of the sums of a cell to variables 1, 2, ... of its nodes.
-  pure subroutine add_to_nodes(last, n_var, skip, n_part, n_x, n_y, n_z, part, i, j, k, a)
-    integer, intent(in) :: last(3), n_var, skip, n_part, n_x, n_y, n_z, i, j, k
-    real(wp), intent(in) :: part(most_lanes, n_part, 3)
+  !> Adds columns skip+1, skip+2, ... of the sums of a row of cells to the variables of its nodes.
+  pure subroutine add_row(last, n_var, skip, n_part, n_y, n_z, row, j, k, a)
+    integer, intent(in) :: last(3), n_var, skip, n_part, n_y, n_z, j, k
+    real(wp), intent(in) :: row(most_lanes, n_part, 0:last(1) + 2)
     real(wp), intent(inout) :: a(0:last(1), n_var, 0:last(2), 0:last(3))
-    integer :: b, c, v, s, l
+    integer :: b, c, v, i, l
     l = 0
     do c = 1, n_z
       do b = 1, n_y
         l = l + 1
         do v = 1, n_var
-          do s = 1, n_x
-            a(i - 2 + s, v, j - 2 + b, k - 2 + c) = a(i - 2 + s, v, j - 2 + b, k - 2 + c) + part(l, skip + v, s)
+          do i = 0, last(1)
+            a(i, v, j - 2 + b, k - 2 + c) = a(i, v, j - 2 + b, k - 2 + c) + row(l, skip + v, i)
           end do
         end do
       end do
     end do
-  end subroutine add_to_nodes
+  end subroutine add_row
 
-  !> Mass and momentum at the nodes of a cell: total(lane, variable, function along x).
-  pure subroutine sum_momentum(n, x, y, z, lanes, affine, capacity, f, total)
+  !> Mass and momentum of n <= piece particles at the nodes of their cell: total(lane, variable, function along x).
+  !> w: functions along x; bump: what those along y and z are made of.
+  pure subroutine sum_cell(n, x, y, z, lanes, w, bump, affine, capacity, f, total)
     integer, intent(in) :: n, affine, capacity
     type(line_functions), intent(in) :: x, y, z
     type(lane_functions), intent(in) :: lanes
-    real(wp), intent(in) :: f(capacity, *)
-    real(wp), intent(out) :: total(most_lanes, 4, 3)
-    real(wp) :: t(3), bump(2, 3), w(most_lanes), m, u(3), c(3, 3), v(3), part
-    integer :: q, a, d, l, n_lane
-    n_lane = lanes%n
-    total = 0
+    real(wp), intent(in) :: w(piece, 3), bump(piece, 2, 2), f(capacity, *)
+    real(wp), intent(inout) :: total(most_lanes, 4, 3)
+    real(wp) :: t(piece, 3), unused(piece, 2), other(piece, 2)
+    if (affine > 0) then
+      call tensor_bumps(x, n, f(1, at_position), t(:, 1), unused, other)
+      call tensor_bumps(y, n, f(1, at_position + 1), t(:, 2), unused, other)
+      call tensor_bumps(z, n, f(1, at_position + 2), t(:, 3), unused, other)
+      call sum_affine(n, x%n, lanes%y, lanes%z, lanes%at_y, lanes%at_z, x%at, 1/[x%inverse, y%inverse, z%inverse], t, w, &
+        bump, f(1, at_mass), f(1, at_velocity), f(1, at_velocity + 1), f(1, at_velocity + 2), capacity, f(1, affine), total)
+    else
+      call sum_momentum(n, x%n, lanes%y, lanes%z, w, bump, f(1, at_mass), f(1, at_velocity), f(1, at_velocity + 1), &
+        f(1, at_velocity + 2), total)
+    end if
+  end subroutine sum_cell
+
+  pure subroutine sum_momentum(n, n_x, y, z, wx, bump, mass, v1, v2, v3, total)
+    integer, intent(in) :: n, n_x
+    real(wp), intent(in) :: y(most_lanes, 0:2), z(most_lanes, 0:2), wx(piece, 3), bump(piece, 2, 2)
+    real(wp), intent(in), dimension(n) :: mass, v1, v2, v3
+    real(wp), intent(inout) :: total(most_lanes, 4, 3)
+    real(wp) :: w(most_lanes), b1, b2, b3, b4, m, u1, u2, u3, part
+    integer :: q, a, l
     do q = 1, n
-      t = [coordinate(x, f(q, at_position)), coordinate(y, f(q, at_position + 1)), coordinate(z, f(q, at_position + 2))]
-      bump(:, 1) = bumps(x, t(1))
-      bump(:, 2) = bumps(y, t(2))
-      bump(:, 3) = bumps(z, t(3))
-      u = [f(q, at_velocity), f(q, at_velocity + 1), f(q, at_velocity + 2)]
-      if (affine > 0) then
-        do d = 1, 3
-          c(d, 1) = f(q, affine + 3*d - 3)/x%inverse
-          c(d, 2) = f(q, affine + 3*d - 2)/y%inverse
-          c(d, 3) = f(q, affine + 3*d - 1)/z%inverse
-        end do
-        u = u - (c(:, 2)*t(2) + c(:, 3)*t(3))
-      end if
+      b1 = bump(q, 1, 1)
+      b2 = bump(q, 2, 1)
+      b3 = bump(q, 1, 2)
+      b4 = bump(q, 2, 2)
+      u1 = v1(q)
+      u2 = v2(q)
+      u3 = v3(q)
       !$omp simd
-      do l = 1, n_lane
-        w(l) = (lanes%y(l, 0) + (lanes%y(l, 1)*bump(1, 2) + lanes%y(l, 2)*bump(2, 2))) &
-          *(lanes%z(l, 0) + (lanes%z(l, 1)*bump(1, 3) + lanes%z(l, 2)*bump(2, 3)))
+      do l = 1, most_lanes
+        w(l) = (y(l, 0) + (y(l, 1)*b1 + y(l, 2)*b2))*(z(l, 0) + (z(l, 1)*b3 + z(l, 2)*b4))
       end do
-      do a = 1, x%n
-        m = f(q, at_mass)*(x%p(0, a) + (x%p(1, a)*bump(1, 1) + x%p(2, a)*bump(2, 1)))
-        if (affine > 0) then
-          v = u + c(:, 1)*(x%at(a) - t(1))
-          !$omp simd private(part)
-          do l = 1, n_lane
-            part = m*w(l)
-            total(l, 1, a) = total(l, 1, a) + part
-            total(l, 2, a) = total(l, 2, a) + part*(v(1) + (c(1, 2)*lanes%at_y(l) + c(1, 3)*lanes%at_z(l)))
-            total(l, 3, a) = total(l, 3, a) + part*(v(2) + (c(2, 2)*lanes%at_y(l) + c(2, 3)*lanes%at_z(l)))
-            total(l, 4, a) = total(l, 4, a) + part*(v(3) + (c(3, 2)*lanes%at_y(l) + c(3, 3)*lanes%at_z(l)))
-          end do
-        else
-          !$omp simd private(part)
-          do l = 1, n_lane
-            part = m*w(l)
-            total(l, 1, a) = total(l, 1, a) + part
-            total(l, 2, a) = total(l, 2, a) + part*u(1)
-            total(l, 3, a) = total(l, 3, a) + part*u(2)
-            total(l, 4, a) = total(l, 4, a) + part*u(3)
-          end do
-        end if
+      do a = 1, n_x
+        m = mass(q)*wx(q, a)
+        !$omp simd private(part)
+        do l = 1, most_lanes
+          part = m*w(l)
+          total(l, 1, a) = total(l, 1, a) + part
+          total(l, 2, a) = total(l, 2, a) + part*u1
+          total(l, 3, a) = total(l, 3, a) + part*u2
+          total(l, 4, a) = total(l, 4, a) + part*u3
+        end do
       end do
     end do
   end subroutine sum_momentum
 
-  !> Internal force at the nodes of a cell: total(lane, component, function along x).
-  pure subroutine sum_force(n, x, y, z, lanes, capacity, f, total)
-    integer, intent(in) :: n, capacity
-    type(line_functions), intent(in) :: x, y, z
-    type(lane_functions), intent(in) :: lanes
-    real(wp), intent(in) :: f(capacity, *)
-    real(wp), intent(out) :: total(most_lanes, 3, 3)
-    real(wp) :: bump(2, 3), slope(2, 3), w(most_lanes), slope_y(most_lanes), slope_z(most_lanes)
-    real(wp) :: v, s1, s2, s3, s4, s5, s6, wx, gx, f2, f3, f4, f5, f6, g1, g2, g3, wy, wz
-    integer :: q, a, l, n_lane
-    n_lane = lanes%n
-    total = 0
+  !> With the velocity v + C (X - x). at_x, at_y, at_z: control points X in cell coordinates; t: particles likewise; h: cell sizes.
+  pure subroutine sum_affine(n, n_x, y, z, at_y, at_z, at_x, h, t, wx, bump, mass, v1, v2, v3, capacity, c, total)
+    integer, intent(in) :: n, n_x, capacity
+    real(wp), intent(in) :: y(most_lanes, 0:2), z(most_lanes, 0:2), at_y(most_lanes), at_z(most_lanes), at_x(3), h(3)
+    real(wp), intent(in) :: t(piece, 3), wx(piece, 3), bump(piece, 2, 2), c(capacity, 9)
+    real(wp), intent(in), dimension(n) :: mass, v1, v2, v3
+    real(wp), intent(inout) :: total(most_lanes, 4, 3)
+    real(wp) :: u(most_lanes, 3), w(most_lanes), b1, b2, b3, b4, c1, c2, c3, base, m, part, s1, s2, s3
+    integer :: q, a, l, d
     do q = 1, n
-      call bumps_and_slopes(x, f(q, at_position), bump(:, 1), slope(:, 1))
-      call bumps_and_slopes(y, f(q, at_position + 1), bump(:, 2), slope(:, 2))
-      call bumps_and_slopes(z, f(q, at_position + 2), bump(:, 3), slope(:, 3))
-      !$omp simd private(wy, wz)
-      do l = 1, n_lane
-        wy = lanes%y(l, 0) + (lanes%y(l, 1)*bump(1, 2) + lanes%y(l, 2)*bump(2, 2))
-        wz = lanes%z(l, 0) + (lanes%z(l, 1)*bump(1, 3) + lanes%z(l, 2)*bump(2, 3))
-        w(l) = wy*wz
-        slope_y(l) = (lanes%y(l, 1)*slope(1, 2) + lanes%y(l, 2)*slope(2, 2))*wz
-        slope_z(l) = wy*(lanes%z(l, 1)*slope(1, 3) + lanes%z(l, 2)*slope(2, 3))
+      b1 = bump(q, 1, 1)
+      b2 = bump(q, 2, 1)
+      b3 = bump(q, 1, 2)
+      b4 = bump(q, 2, 2)
+      !$omp simd
+      do l = 1, most_lanes
+        w(l) = (y(l, 0) + (y(l, 1)*b1 + y(l, 2)*b2))*(z(l, 0) + (z(l, 1)*b3 + z(l, 2)*b4))
       end do
-      v = -f(q, at_volume)
-      s1 = v*(f(q, sxx) - f(q, at_viscosity))
-      s2 = v*(f(q, syy) - f(q, at_viscosity))
-      s3 = v*(f(q, szz) - f(q, at_viscosity))
-      s4 = v*f(q, syz)
-      s5 = v*f(q, sxz)
-      s6 = v*f(q, sxy)
-      do a = 1, x%n
-        wx = x%p(0, a) + (x%p(1, a)*bump(1, 1) + x%p(2, a)*bump(2, 1))
-        gx = x%p(1, a)*slope(1, 1) + x%p(2, a)*slope(2, 1)
-        g1 = gx*s1
-        g2 = gx*s6
-        g3 = gx*s5
-        f2 = wx*s2
-        f3 = wx*s3
-        f4 = wx*s4
-        f5 = wx*s5
-        f6 = wx*s6
+      do d = 1, 3
+        if (d == 1) base = v1(q)
+        if (d == 2) base = v2(q)
+        if (d == 3) base = v3(q)
+        c1 = c(q, 3*d - 2)*h(1)
+        c2 = c(q, 3*d - 1)*h(2)
+        c3 = c(q, 3*d)*h(3)
+        base = base - ((c1*t(q, 1) + c2*t(q, 2)) + c3*t(q, 3))
         !$omp simd
-        do l = 1, n_lane
+        do l = 1, most_lanes
+          u(l, d) = base + (c2*at_y(l) + c3*at_z(l))
+        end do
+      end do
+      do a = 1, n_x
+        m = mass(q)*wx(q, a)
+        s1 = c(q, 1)*h(1)*at_x(a)
+        s2 = c(q, 4)*h(1)*at_x(a)
+        s3 = c(q, 7)*h(1)*at_x(a)
+        !$omp simd private(part)
+        do l = 1, most_lanes
+          part = m*w(l)
+          total(l, 1, a) = total(l, 1, a) + part
+          total(l, 2, a) = total(l, 2, a) + part*(u(l, 1) + s1)
+          total(l, 3, a) = total(l, 3, a) + part*(u(l, 2) + s2)
+          total(l, 4, a) = total(l, 4, a) + part*(u(l, 3) + s3)
+        end do
+      end do
+    end do
+  end subroutine sum_affine
+
+  !> Internal force of n <= piece particles at the nodes of their cell: total(lane, component, function along x).
+  pure subroutine sum_force(n, n_x, lanes, w, slope_x, bump, slope, capacity, f, total)
+    integer, intent(in) :: n, n_x, capacity
+    type(lane_functions), intent(in) :: lanes
+    real(wp), intent(in) :: w(piece, 3), slope_x(piece, 3), bump(piece, 2, 2), slope(piece, 2, 2), f(capacity, *)
+    real(wp), intent(inout) :: total(most_lanes, 3, 3)
+    real(wp) :: flux(piece, 6)
+    integer :: q
+    !$omp simd
+    do q = 1, n
+      flux(q, 1) = -f(q, at_volume)*(f(q, sxx) - f(q, at_viscosity))
+      flux(q, 2) = -f(q, at_volume)*(f(q, syy) - f(q, at_viscosity))
+      flux(q, 3) = -f(q, at_volume)*(f(q, szz) - f(q, at_viscosity))
+      flux(q, 4) = -f(q, at_volume)*f(q, syz)
+      flux(q, 5) = -f(q, at_volume)*f(q, sxz)
+      flux(q, 6) = -f(q, at_volume)*f(q, sxy)
+    end do
+    call sum_flux(n, n_x, lanes%y, lanes%z, w, slope_x, bump, slope, flux, total)
+  end subroutine sum_force
+
+  pure subroutine sum_flux(n, n_x, y, z, wx, slope_x, bump, slope, flux, total)
+    integer, intent(in) :: n, n_x
+    real(wp), intent(in) :: y(most_lanes, 0:2), z(most_lanes, 0:2), wx(piece, 3), slope_x(piece, 3), bump(piece, 2, 2)
+    real(wp), intent(in) :: slope(piece, 2, 2), flux(piece, 6)
+    real(wp), intent(inout) :: total(most_lanes, 3, 3)
+    real(wp), dimension(most_lanes) :: w, slope_y, slope_z
+    real(wp) :: b1, b2, b3, b4, s1, s2, s3, s4, wy, wz, g1, g2, g3, f2, f3, f4, f5, f6
+    integer :: q, a, l
+    do q = 1, n
+      b1 = bump(q, 1, 1)
+      b2 = bump(q, 2, 1)
+      b3 = bump(q, 1, 2)
+      b4 = bump(q, 2, 2)
+      s1 = slope(q, 1, 1)
+      s2 = slope(q, 2, 1)
+      s3 = slope(q, 1, 2)
+      s4 = slope(q, 2, 2)
+      !$omp simd private(wy, wz)
+      do l = 1, most_lanes
+        wy = y(l, 0) + (y(l, 1)*b1 + y(l, 2)*b2)
+        wz = z(l, 0) + (z(l, 1)*b3 + z(l, 2)*b4)
+        w(l) = wy*wz
+        slope_y(l) = (y(l, 1)*s1 + y(l, 2)*s2)*wz
+        slope_z(l) = wy*(z(l, 1)*s3 + z(l, 2)*s4)
+      end do
+      do a = 1, n_x
+        g1 = slope_x(q, a)*flux(q, 1)
+        g2 = slope_x(q, a)*flux(q, 6)
+        g3 = slope_x(q, a)*flux(q, 5)
+        f2 = wx(q, a)*flux(q, 2)
+        f3 = wx(q, a)*flux(q, 3)
+        f4 = wx(q, a)*flux(q, 4)
+        f5 = wx(q, a)*flux(q, 5)
+        f6 = wx(q, a)*flux(q, 6)
+        !$omp simd
+        do l = 1, most_lanes
           total(l, 1, a) = total(l, 1, a) + ((g1*w(l) + f6*slope_y(l)) + f5*slope_z(l))
           total(l, 2, a) = total(l, 2, a) + ((g2*w(l) + f2*slope_y(l)) + f4*slope_z(l))
           total(l, 3, a) = total(l, 3, a) + ((g3*w(l) + f4*slope_y(l)) + f3*slope_z(l))
         end do
       end do
     end do
-  end subroutine sum_force
-
-  !> Coordinate in the cell along one direction.
-  pure real(wp) function coordinate(functions, x)
-    type(line_functions), intent(in) :: functions
-    real(wp), intent(in) :: x
-    coordinate = min(max((x - functions%lower)*functions%inverse - functions%origin, functions%least), functions%most)
-  end function coordinate
-
-  !> What the functions are made of: u, v of line_functions.
-  pure function bumps(functions, t)
-    type(line_functions), intent(in) :: functions
-    real(wp), intent(in) :: t
-    real(wp) :: bumps(2)
-    bumps(1) = (1 - t)*(functions%linear + functions%quadratic*(1 - t))
-    bumps(2) = t*(functions%linear + functions%quadratic*t)
-  end function bumps
-
-  pure subroutine bumps_and_slopes(functions, x, bump, slope)
-    type(line_functions), intent(in) :: functions
-    real(wp), intent(in) :: x
-    real(wp), intent(out) :: bump(2), slope(2)
-    real(wp) :: t
-    t = coordinate(functions, x)
-    bump = bumps(functions, t)
-    slope(1) = -(functions%linear + 2*functions%quadratic*(1 - t))*functions%inverse
-    slope(2) = (functions%linear + 2*functions%quadratic*t)*functions%inverse
-  end subroutine bumps_and_slopes
+  end subroutine sum_flux
 
   !> Sum of each node's function over the particles of one cell, for loads. total(function along x, y, z).
   pure subroutine sum_tensor(frame, cell, capacity, n_field, f, first, last, total)
@@ -223,15 +268,15 @@ contains
     real(wp), intent(in) :: f(capacity, n_field)
     real(wp), intent(inout) :: total(3, 3, 3)
     type(line_functions) :: line(3)
-    real(wp) :: bump(2), w(3, 3)
+    real(wp) :: t(1), bump(piece, 2), slope(piece, 2), w(3, 3)
     integer :: q, d, a, b, c
     do d = 1, 3
       line(d) = functions_of(frame, d, cell(d))
     end do
     do q = first, last
       do d = 1, 3
-        bump = bumps(line(d), coordinate(line(d), f(q, at_position + d - 1)))
-        w(:, d) = line(d)%p(0, :) + (line(d)%p(1, :)*bump(1) + line(d)%p(2, :)*bump(2))
+        call tensor_bumps(line(d), 1, f(q, at_position + d - 1), t, bump, slope)
+        w(:, d) = line(d)%p(0, :) + (line(d)%p(1, :)*bump(1, 1) + line(d)%p(2, :)*bump(1, 2))
       end do
       do c = 1, 3
         do b = 1, 3

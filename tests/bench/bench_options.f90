@@ -9,7 +9,7 @@ module bench_options
   integer, parameter :: longest = 400
 
   type, public :: options_type
-    character(16) :: command = '' !< accuracy, speed, stability or list
+    character(16) :: command = '' !< accuracy, speed, stability, particles or list
     character(48), allocatable :: cases(:), schemes(:) !< none: all; those of the command
     integer, allocatable :: cells(:) !< along x; none: each problem's own
     real(wp), allocatable :: cfl(:)
@@ -18,7 +18,7 @@ module bench_options
   end type options_type
 
   character(*), parameter :: usage = &
-    'usage: flow_bench accuracy|speed|stability|list [--case A,B] [--schemes A,B] [--cells N,M] [--cfl X,Y] [--quick]'
+    'usage: flow_bench accuracy|speed|stability|particles|list [--case A,B] [--schemes A,B] [--cells N,M] [--cfl X,Y] [--quick]'
 
 contains
 
@@ -29,7 +29,7 @@ contains
     integer :: i
     allocate (options%cases(0), options%schemes(0), options%cells(0), options%cfl(0))
     call get_command_argument(1, options%command)
-    options%valid = any(options%command == [character(16) :: 'accuracy', 'speed', 'stability', 'list'])
+    options%valid = any(options%command == [character(16) :: 'accuracy', 'speed', 'stability', 'particles', 'list'])
     i = 2
     do while (i <= command_argument_count() .and. options%valid)
       call get_command_argument(i, word)

@@ -1,5 +1,6 @@
 !> Runs the test problems of the flow and prints a line of comma-separated values for each: accuracy over resolutions and schemes,
-!> stability at the Courant numbers that are promised, speed by scene and brick. tools/bench calls it and makes tables and pictures.
+!> stability at the Courant numbers that are promised, speed by scene and brick; and the speed of particles. tools/bench calls it
+!> and makes tables and pictures.
 program flow_bench
   use bench_options, only: options_type, read_options, wanted
   use calibration, only: calibration_type, calibrate
@@ -13,6 +14,7 @@ program flow_bench
   use kinds, only: wp
   use parallel, only: parallel_start, parallel_stop
   use process, only: exit_process
+  use solid_speed, only: n_solid_scenes, particle_speed, solid_scene_names, solid_scene_titles, time_particles
   use speed_scenes, only: add_speed_scenes
   implicit none
   character(48), parameter :: accuracy_schemes(4) = [character(48) :: 'paper', 'muscl+third_order+sensor', &
@@ -34,6 +36,7 @@ program flow_bench
     case ('accuracy'); call run_accuracy()
     case ('stability'); call run_stability()
     case ('speed'); call run_speed()
+    case ('particles'); call run_particles()
     case ('list'); call print_list()
     end select
   end if
@@ -179,5 +182,21 @@ contains
       end do
     end do
   end subroutine run_speed
+
+  subroutine run_particles()
+    type(particle_speed) :: speed
+    integer :: i, k
+    print '(a)', 'case,particles,bricks,ns_per_particle_step,triad_gb_s,multiply_add_gflop_s,title'
+    do i = 1, n_solid_scenes
+      if (.not. wanted(solid_scene_names(i), options%cases)) cycle
+      do k = 1, merge(1, 2, options%quick)
+        speed = time_particles(i, k == 2, merge(60, 300, options%quick))
+        machine = calibrate()
+        print '(a,2(",",i0),3(",",f0.2),3a)', trim(solid_scene_names(i)), speed%particles, merge(8, 0, k == 2), speed%nanoseconds, &
+          machine%triad, machine%multiply_add, ',"', trim(solid_scene_titles(i)), '"'
+        flush (6)
+      end do
+    end do
+  end subroutine run_particles
 
 end program flow_bench

@@ -7,6 +7,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import numpy as np  # noqa: E402
 
+from comparison_pictures import comparison_picture  # noqa: E402
 from curve_pictures import curves_picture  # noqa: E402
 from flow_pictures import lines_picture, slice_picture  # noqa: E402
 from snapshot_files import AXES, SnapshotError, open_snapshot  # noqa: E402
@@ -20,6 +21,7 @@ EXAMPLES = """examples
   tools/plot runs/rc_slab/snapshot_solid_000800.vtkhdf --field damage --view -z --mirror xy
   tools/plot runs/rc_slab/snapshot_solid_000800.vtkhdf --field pressure --plane y=0.002 --mirror x
   tools/plot runs/rc_slab/gauges.csv --columns '*.displacement_z'
+  tools/plot runs/material_tests/hjc_*.csv --against compression --columns pressure,von_mises
 """
 
 
@@ -37,6 +39,8 @@ def arguments():
     parser.add_argument("--linear", dest="log", action="store_false", help="linear colours")
     parser.add_argument("--no-solid", action="store_true", help="do not draw the particles into slices of the flow")
     parser.add_argument("--columns", metavar="PATTERN", help="columns of a table, as '*.pressure'")
+    parser.add_argument("--against", metavar="COLUMN", help="draw the --columns of all tables given over this one of their columns, in one picture; "
+                        "-COLUMN (as --against=-strain_xx) changes the sign")
     parser.add_argument("--output", metavar="FOLDER", help="where the pictures go (default: beside each file)")
     parser.add_argument("--list", action="store_true", help="only tell what fields the files have")
     return parser
@@ -114,6 +118,15 @@ def draw_lines(paths, options):
     return lines_picture(flows, names, target(options, flows[-1].path, [options.field.replace(",", "_") if options.field else "lines"]))
 
 
+def draw_comparison(paths, options):
+    """Tables in one picture, one column over another."""
+    if not options.columns or not all(path.endswith(".csv") for path in paths):
+        raise SnapshotError("--against needs tables and --columns, as --columns pressure,von_mises")
+    names = options.columns.split(",")
+    tail = [name.lstrip("-") for name in names] + ["over", options.against.lstrip("-")]
+    return comparison_picture(paths, options.against, names, target(options, paths[0], tail))
+
+
 def is_line(path):
     """True for a flow snapshot of one dimension."""
     if path.endswith(".csv"):
@@ -140,6 +153,9 @@ def main():
                 failed = True
                 print(f"error: {failure}", file=sys.stderr)
         files = [path for path in options.files if not os.path.isdir(path)]
+        if options.against:
+            print(draw_comparison(files, options))
+            files = []
         lines = [path for path in files if not options.list and is_line(path)]
         if lines:
             print(draw_lines(lines, options))

@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 
+from comparison_pictures import comparison_picture
 from curve_pictures import curves_picture, read_table
 from flow_pictures import draw_slice, lines_picture, plane_axes, slice_picture
 from snapshot_files import AXES, SnapshotError, open_snapshot, place_text
@@ -251,12 +252,21 @@ def table_pictures(run):
             yield curves_picture(path, run.path(table))
 
 
+def material_pictures(run):
+    """The curves of material tests."""
+    for path in sorted(glob.glob(os.path.join(run.folder, "*.csv"))):
+        if {"strain_xx", "stress_xx"} <= {column.name for column in read_table(path)[0]}:
+            name = os.path.splitext(os.path.basename(path))[0]
+            yield comparison_picture([path], "strain_xx", ["stress_xx", "pressure", "von_mises"], run.path(name))
+
+
 def draw_standard(folder):
     """Draws everything; a picture that fails does not stop the others. Gives paths and messages of failures."""
     run = Run(folder)
     os.makedirs(run.pictures, exist_ok=True)
     paths, failures = [], []
-    parts = [(run.flow, flow_pictures), (os.path.exists(run.peaks), peak_pictures), (run.solid, solid_pictures), (True, table_pictures)]
+    parts = [(run.flow, flow_pictures), (os.path.exists(run.peaks), peak_pictures), (run.solid, solid_pictures), (True, table_pictures),
+             (True, material_pictures)]
     for there, part in parts:
         if not there:
             continue

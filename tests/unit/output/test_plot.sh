@@ -38,10 +38,12 @@ check 'sod runs' run sod one
 check 'shock and bubble runs' run shock_helium_coarse two --steps 20 --set mesh%cells=65,18,1
 check 'taylor bar runs' run taylor_bar bar --steps 40 --set body%spacing=0.5
 check 'slab runs' run rc_slab_coarse three --steps 12
-check 'standard pictures' plot --standard one two bar three --standard one
+check 'material tests run' run material_tests points
+check 'standard pictures' plot --standard one two bar three points --standard one
 check 'pictures in one dimension' pictures one/pictures flow_lines peaks gauges history
 check 'pictures in two dimensions' pictures two/pictures flow_pressure flow_density flow_schlieren peaks history
 check 'pictures of a solid' pictures bar/pictures solid_plastic_strain solid_pressure solid_plastic_strain_in_time gauges history
+check 'pictures of material tests' pictures points/pictures hjc_triaxial copper_ramp
 check 'pictures in three dimensions' pictures three/pictures flow_pressure flow_last_schlieren peaks solid_pressure solid_speed gauges
 
 flow=$(ls three/snapshot_flow_*.vtkhdf | tail -n 1)
@@ -49,6 +51,9 @@ solid=$(ls three/snapshot_solid_*.vtkhdf | tail -n 1)
 check 'slice, view, cut and curves' plot "$flow" "$solid" three/gauges.csv --field pressure --mirror xy --output some
 check 'cut by a plane' plot "$solid" --field von_mises --plane y=0.1 --range 0,2 --output some
 check 'oblique view from below' plot "$solid" --view -1,-1,-0.5 --output some
+check 'tables over a column of their own' plot points/hjc_tension.csv points/rht_tension.csv --against strain_xx --columns=-stress_xx,damage --output some
+check 'their picture' pictures some hjc_tension_stress_xx_damage_over_strain_xx
+check 'a wrong column is named with the right ones' says "no column 'stress'; there are: " plot points/hjc_tension.csv --against strain_xx --columns stress
 check 'some pictures' pictures some "$(basename "$flow" .vtkhdf)_pressure_y" "$(basename "$solid" .vtkhdf)_pressure_+z" gauges \
   "$(basename "$solid" .vtkhdf)_von_mises_cut_y" "$(basename "$solid" .vtkhdf)_damage_-1_-1_-0.5"
 check 'a wrong field is named with the right ones' says "no field 'presure'; there are: " plot "$flow" --field presure
