@@ -163,8 +163,18 @@ contains
 
   integer function count_flow_materials(deck) result(n)
     type(deck_type), intent(in) :: deck
-    n = count(len_trim(deck%material%eos) > 0)
+    integer :: i
+    n = count([(flows(deck, i), i=1, size(deck%material))])
   end function count_flow_materials
+
+  !> True for a material that a region or a charge is made of; solids can have an eos too.
+  pure logical function flows(deck, i)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: i
+    integer :: k
+    flows = any([(find_material(deck, deck%region(k)%material) == i, k=1, size(deck%region))]) &
+      .or. any([(find_material(deck, deck%charge(k)%explosive) == i, k=1, size(deck%charge))])
+  end function flows
 
   function materials_text(deck) result(line)
     type(deck_type), intent(in) :: deck
@@ -172,7 +182,7 @@ contains
     integer :: i
     line = ''
     do i = 1, size(deck%material)
-      if (len_trim(deck%material(i)%eos) == 0) cycle
+      if (.not. flows(deck, i)) cycle
       if (len(line) > 0) line = line//', '
       line = line//trim(deck%material(i)%name)//' ('//trim(deck%material(i)%eos)//')'
     end do
