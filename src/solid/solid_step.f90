@@ -14,6 +14,7 @@ module solid_step
   use particle_checks, only: check_particles
   use particles, only: particle_block, cell_of_particle
   use solid_load, only: loaded_cells, apply_load, book_load
+  use solid_material, only: model_fluid
   use solid_state, only: solid_type, limit_type, frame_of, match_nodes, book_impulse, book_gravity_impulse, n_supports, &
     scheme_musl, scheme_usf
   use solid_time_step, only: find_limit
@@ -222,7 +223,8 @@ contains
         call move_particles(frame, solid%at_affine(set), dt, strain_dt, blk, first, last, cell, solid%node(field, b)%a, &
           solid%mapped(field, b)%a, gradient, n_moved, moved)
         if (strain_dt > 0) then
-          call center_gradient(last - first + 1, solid%scheme /= scheme_usf, gradient)
+          ! fluids, which keep no shape, are nearer to exact solutions without
+          if (solid%material(set)%model /= model_fluid) call center_gradient(last - first + 1, solid%scheme /= scheme_usf, gradient)
           call update_stress(solid%material(set), strain_dt, length, last - first + 1, blk%capacity, size(blk%f, 2), blk%f, first, &
             gradient)
         end if
