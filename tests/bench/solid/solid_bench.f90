@@ -1,10 +1,12 @@
-!> Prints the tables of docs/validation.md for shapes, transfers and schemes of the solid: solid_bench motions | vibrations | orders.
+!> Prints the tables of docs/validation.md for shapes, transfers and schemes of the solid: solid_bench motions | vibrations | shocks |
+!> orders.
 program solid_bench
   use iso_fortran_env, only: output_unit
   use kinds, only: wp
   use manufactured_solids, only: run_manufactured, manufactured_type
   use parallel, only: parallel_start, parallel_stop
   use solid_motions, only: run_rotation, run_extension, run_discs, rotation_type, extension_type, discs_type
+  use solid_shocks, only: run_copper, run_spall, copper_type, spall_type
   use solid_numerics, only: numerics_type, numerics_name, all_numerics
   use solid_vibrations, only: run_bar, run_pulse, run_cylinder, bar_type, cylinder_type
   implicit none
@@ -27,13 +29,19 @@ program solid_bench
     do i = 1, size(list)
       call print_vibrations(list(i))
     end do
+  case ('shocks')
+    call print_head([character(32) :: 'copper: pressure', 'speed', 'energy', 'cfl 1/4: pressure', 'speed', 'energy', &
+      'spall 1.2', 'spall 2'])
+    do i = 1, size(list)
+      call print_shocks(list(i))
+    end do
   case ('orders')
     call print_orders('axis_aligned', 'elastic', [1e-4_wp, 0.02_wp], 8, 4)
     call print_orders('axis_aligned', 'neo_hookean', [1e-4_wp, 0.02_wp], 8, 4)
     call print_orders('vortex', 'elastic', [1e-4_wp, 0.05_wp], 8, 3)
     call print_orders('vortex', 'neo_hookean', [1e-4_wp, 0.05_wp], 8, 3)
   case default
-    print '(a)', 'usage: solid_bench motions | vibrations | orders'
+    print '(a)', 'usage: solid_bench motions | vibrations | shocks | orders'
   end select
   call parallel_stop()
 
@@ -76,6 +84,23 @@ contains
     call print_row(numerics, [small%frequency, small%loss, large%frequency, large%loss, run_pulse(numerics), &
       cylinder%displacement, cylinder%stress])
   end subroutine print_vibrations
+
+  !> Relative errors; of the energy: change of the whole.
+  subroutine print_shocks(numerics)
+    type(numerics_type), intent(in) :: numerics
+    type(numerics_type) :: slower
+    type(copper_type) :: copper(2)
+    type(spall_type) :: spall(2)
+    integer :: k
+    slower = numerics
+    slower%cfl = 0.25_wp
+    copper(1) = run_copper(numerics, 200)
+    copper(2) = run_copper(slower, 200)
+    spall(1) = run_spall(numerics, 300, 1.2_wp)
+    spall(2) = run_spall(numerics, 300, 2.0_wp)
+    call print_row(numerics, [(copper(k)%pressure/171.75e9_wp - 1, copper(k)%speed/5167.5_wp - 1, copper(k)%balance, k=1, 2), &
+      spall%distance/spall%theory - 1])
+  end subroutine print_shocks
 
   !> Errors and orders over n meshes that start with `cells` and double.
   subroutine print_orders(motion, law, amplitudes, cells, n)
