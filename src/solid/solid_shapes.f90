@@ -8,8 +8,8 @@ module solid_shapes
 
   integer, parameter :: is_box = 1, is_sphere = 2, is_cylinder = 3, is_ogive = 4
 
-  !> A box, a sphere, a cylinder with flat ends, or one with an ogive on its end. Directions that are not active play no part: in two dimensions a sphere is a
-  !> disc.
+  !> A box, a sphere, a cylinder with flat ends, or one with an ogive on its end. Directions that are not active play no part: in
+  !> two dimensions a sphere is a disc.
   type, public :: shape_type
     integer :: kind = is_box
     logical :: active(3) = .true.

@@ -2,8 +2,8 @@
 !> particles as a kick before each step. The error of the positions then shows the order of the method.
 !>
 !> With g = A (1 - cos(2 pi t/T))/2 in both:
-!> axis_aligned: u = g sin(2 pi X), v = -g sin(2 pi Y) in a unit square whose sides slide (as Sadeghirad, Brannon & Burghardt 2011, with
-!> a course over time that starts from rest);
+!> axis_aligned: u = g sin(2 pi X), v = -g sin(2 pi Y) in a unit square whose sides slide (as Sadeghirad, Brannon & Burghardt 2011,
+!> with a course over time that starts from rest);
 !> vortex: rings turn by g (1 - 16 (R - 1)^2)^4 for 3/4 < R < 5/4, which shears without any change of volume. Kamojjala, Brannon,
 !> Sadeghirad & Guilkey (2015) have the power 2, with which the body force jumps at the edges of the ring; here it is smooth, and
 !> the ring lies in a square at rest instead of alone, so that no surface is near.

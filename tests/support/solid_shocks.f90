@@ -31,8 +31,8 @@ module solid_shocks
 
 contains
 
-  !> A bar of copper of `cells` cells on its length of 0.1 m flies at 2500 m/s against a plane of symmetry, which is another one that
-  !> comes at it. Hugoniot: us = 3970 + 1.479 up, density 8960, Grueneisen 2.12: 171.75 GPa, 5167.5 m/s.
+  !> A bar of copper of `cells` cells on its length of 0.1 m flies at 2500 m/s against a plane of symmetry, which is another one
+  !> that comes at it. Hugoniot: us = 3970 + 1.479 up, density 8960, Grueneisen 2.12: 171.75 GPa, 5167.5 m/s.
   function run_copper(numerics, cells) result(copper)
     type(numerics_type), intent(in) :: numerics
     integer, intent(in) :: cells
@@ -102,11 +102,11 @@ contains
     copper%balance = (sum(totals%kinetic) + sum(totals%internal))/start - 1
   end function run_copper
 
-  !> A bar of HJC concrete, 0.6 m long, carries a pulse of compression to its free end, where it comes back as tension. The pulse rises
-  !> over 0.04 m and falls linearly over 0.2 m. When its peak, reflected, is at the distance d from the end, it meets what of the
-  !> compression still comes in, so the tension there is 2 d/0.2 of the peak, and no more later: the first spall is at
-  !> d = 0.1/peak, peak the ratio of the pulse to the strength in uniaxial strain. The concrete breaks as it yields (a tiny strain
-  !> to fracture), as the theory has it.
+  !> A bar of HJC concrete, 0.6 m long, carries a pulse of compression to its free end, where it comes back as tension. The pulse
+  !> rises over 0.04 m and falls linearly over 0.2 m. When its peak, reflected, is at the distance d from the end, it meets what of
+  !> the compression still comes in, so the tension there is 2 d/0.2 of the peak, and no more later: the first spall is at d =
+  !> 0.1/peak, peak the ratio of the pulse to the strength in uniaxial strain. The concrete breaks as it yields (a tiny strain to
+  !> fracture), as the theory has it.
   function run_spall(numerics, cells, peak) result(spall)
     type(numerics_type), intent(in) :: numerics
     integer, intent(in) :: cells

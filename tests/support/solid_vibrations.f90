@@ -174,9 +174,9 @@ contains
     place = place/weight
   end subroutine center_of_pulse
 
-  !> A quarter of a cylinder of radii 1 and 2 in plane strain. A radial force per volume in its innermost quarter stands for a pressure,
-  !> so that the boundary needs no treatment of its own; beyond it Lame's solution holds. The load rises slowly and the motion is
-  !> damped; cells: per unit length.
+  !> A quarter of a cylinder of radii 1 and 2 in plane strain. A radial force per volume in its innermost quarter stands for a
+  !> pressure, so that the boundary needs no treatment of its own; beyond it Lame's solution holds. The load rises slowly and the
+  !> motion is damped; cells: per unit length.
   function run_cylinder(numerics, cells) result(cylinder)
     type(numerics_type), intent(in) :: numerics
     integer, intent(in) :: cells
@@ -257,8 +257,8 @@ contains
     cylinder%stress = cylinder%stress/weight(2)
   end function run_cylinder
 
-  !> Constants of the outer part of the cylinder, u = a r + b/r: its outer surface is free; in the layer u = a' r + b'/r - f r^2/(3 M),
-  !> the inner surface is free, and displacement and radial stress pass from one to the other.
+  !> Constants of the outer part of the cylinder, u = a r + b/r: its outer surface is free; in the layer u = a' r + b'/r - f r^2/(3
+  !> M), the inner surface is free, and displacement and radial stress pass from one to the other.
   pure function outer_constants(load) result(k)
     real(wp), intent(in) :: load
     real(wp) :: k(2), m, g2, s, x, ratio, inner, p

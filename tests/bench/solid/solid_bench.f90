@@ -1,5 +1,5 @@
-!> Prints the tables of docs/validation.md for shapes, transfers and schemes of the solid: solid_bench motions | vibrations | shocks |
-!> orders.
+!> Prints the tables of docs/validation.md for shapes, transfers and schemes of the solid: solid_bench motions | vibrations | shocks
+!> | orders.
 program solid_bench
   use iso_fortran_env, only: output_unit
   use kinds, only: wp
