@@ -18,6 +18,7 @@ module immersed_boundary
   use mesh, only: mesh_type
   use mixture, only: cell_energies, close_cell
   use reductions, only: any_rank, reduce_sum
+  use solid_cover, only: cover_cells, smooth_part, wall_normals
   use solid_load, only: cell_velocity
   use solid_state, only: solid_type, frame_of
   implicit none
@@ -46,24 +47,32 @@ module immersed_boundary
     real(wp), allocatable :: partial(:, :) !< (booked_*, local brick) of this step
     real(wp), allocatable :: books(:) !< (booked_*) since the start, all bricks
     logical :: started = .false. !< cell types of an earlier step are known
+    logical :: moving_wall = .false. !< interface cells are closed and their faces are walls that move; else lg-CFIBM
+    logical :: slip = .true. !< of walls that move
+    real(wp) :: closed_from = 0.5_wp*(interface_cell + inside_cell) !< cells of this kind or above hold no flow
+    type(block), allocatable :: solid_part(:) !< part of each cell that is solid, for walls that move
   end type coupling_type
 
 contains
 
   !> Allocates the coupling of a scene that has both flow and solid.
-  subroutine start_coupling(coupling, mesh, flow, reference_pressure)
+  subroutine start_coupling(coupling, mesh, flow, reference_pressure, moving_wall)
     type(coupling_type), intent(out) :: coupling
     type(mesh_type), intent(in) :: mesh
     type(flow_type), intent(in) :: flow
     real(wp), intent(in) :: reference_pressure
+    logical, intent(in) :: moving_wall
     integer :: b, n_books
     coupling%active = .true.
     coupling%reference_pressure = reference_pressure
+    coupling%moving_wall = moving_wall
+    if (moving_wall) coupling%closed_from = 0.5_wp*(fluid_cell + interface_cell)
     coupling%face = mesh%cell_volume/mesh%spacing
     allocate (coupling%occupancy(mesh%n_local), coupling%kind(mesh%n_local), coupling%kind_before(mesh%n_local))
-    allocate (coupling%list(mesh%n_local), coupling%force(mesh%n_local))
+    allocate (coupling%list(mesh%n_local), coupling%force(mesh%n_local), coupling%solid_part(mesh%n_local))
     do b = 1, mesh%n_local
       call allocate_cells(coupling%occupancy(b), mesh%brick_cells, mesh%ghost, 1, 0.0_wp)
+      if (moving_wall) call allocate_cells(coupling%solid_part(b), mesh%brick_cells, mesh%ghost, 1, 0.0_wp)
       call allocate_cells(coupling%kind(b), mesh%brick_cells, mesh%ghost, 1, fluid_cell)
       call allocate_cells(coupling%kind_before(b), mesh%brick_cells, mesh%ghost, 1, fluid_cell)
     end do
@@ -79,7 +88,7 @@ contains
     integer :: b
     coupling%started = .true.
     do b = 1, mesh%n_local
-      call close_inside(mesh, coupling%kind(b), flow%open(b), flow%wall_impulse(b))
+      call close_cells(mesh, coupling%kind(b), coupling%closed_from, flow%open(b), flow%wall_impulse(b))
     end do
   end subroutine restore_coupling
 
@@ -94,15 +103,19 @@ contains
     logical :: opened
     coupling%partial = 0
     do b = 1, mesh%n_local
-      call copy_counts(mesh%brick_cells, solid%count(b), coupling%occupancy(b))
+      if (coupling%moving_wall) then
+        call cover_cells(mesh, solid, b, coupling%solid_part(b), coupling%occupancy(b))
+      else
+        call copy_counts(mesh%brick_cells, solid%count(b), coupling%occupancy(b))
+      end if
       if (coupling%started) coupling%kind_before(b)%a = coupling%kind(b)%a
     end do
     call classify_cells(mesh, halo, coupling%occupancy, coupling%kind)
     if (coupling%started) then
       opened = .false.
       do b = 1, mesh%n_local
-        opened = opened .or. any(coupling%kind_before(b)%a > interface_cell + 0.5_wp .and. &
-                                 coupling%kind(b)%a < inside_cell - 0.5_wp)
+        opened = opened .or. any(coupling%kind_before(b)%a > coupling%closed_from .and. &
+                                 coupling%kind(b)%a < coupling%closed_from)
       end do
       if (any_rank(opened)) call fill(mesh, halo, flow%w(:, flow%current), flow%layout%n_rows, only_faces=.true.)
       do b = 1, mesh%n_local
@@ -111,9 +124,9 @@ contains
     end if
     coupling%started = .true.
     do b = 1, mesh%n_local
-      call close_inside(mesh, coupling%kind(b), flow%open(b), flow%wall_impulse(b))
-      call list_interface(mesh%brick_cells, mesh%ghost, coupling%kind(b)%a(:, 1, :, :), interface_cell, inside_cell, &
-                          coupling%list(b))
+      call close_cells(mesh, coupling%kind(b), coupling%closed_from, flow%open(b), flow%wall_impulse(b))
+      call list_interface(mesh%brick_cells, mesh%ghost, coupling%kind(b)%a(:, 1, :, :), interface_cell, &
+                          merge(fluid_cell, inside_cell, coupling%moving_wall), coupling%list(b))
     end do
   end subroutine immerse_solid
 
@@ -129,22 +142,23 @@ contains
     end if
   end subroutine copy_counts
 
-  !> flow%open of one brick: 0 in inside cells, 1 elsewhere; unallocated where no cell or ghost is inside. Walls start from nil.
-  subroutine close_inside(mesh, kind, open, wall_impulse)
+  !> flow%open of one brick: 0 in closed cells, 1 elsewhere; unallocated where no cell or ghost is closed. Walls start from nil.
+  subroutine close_cells(mesh, kind, closed_from, open, wall_impulse)
     type(mesh_type), intent(in) :: mesh
     type(block), intent(in) :: kind
+    real(wp), intent(in) :: closed_from
     type(block), intent(inout) :: open, wall_impulse
-    if (any(kind%a > inside_cell - 0.5_wp)) then
+    if (any(kind%a > closed_from)) then
       if (.not. allocated(open%a)) then
         call allocate_cells(open, mesh%brick_cells, mesh%ghost, 1, 1.0_wp)
         call allocate_cells(wall_impulse, mesh%brick_cells, mesh%ghost, 3, 0.0_wp)
       end if
-      open%a = merge(0.0_wp, 1.0_wp, kind%a > inside_cell - 0.5_wp)
+      open%a = merge(0.0_wp, 1.0_wp, kind%a > closed_from)
       wall_impulse%a = 0
     else if (allocated(open%a)) then
       deallocate (open%a, wall_impulse%a)
     end if
-  end subroutine close_inside
+  end subroutine close_cells
 
   !> Books out the gas of cells that became inside cells; cells that are open again get the mean state of their face neighbours
   !> that were open before, and are booked in. Without such a neighbour the gas that was closed in comes out again.
@@ -161,14 +175,15 @@ contains
       do k = 1, n(3)
         do j = 1, n(2)
           do i = 1, n(1)
-            was_inside = before(i, 1, j, k) > interface_cell + 0.5_wp
-            is_inside = now(i, 1, j, k) > interface_cell + 0.5_wp
+            was_inside = before(i, 1, j, k) > coupling%closed_from
+            is_inside = now(i, 1, j, k) > coupling%closed_from
             if (was_inside .eqv. is_inside) cycle
             if (is_inside) then
               call book_gas(i, j, k, -1.0_wp)
               coupling%partial(booked_covered, b) = coupling%partial(booked_covered, b) + 1
             else
-              call mean_of_neighbours(mesh%active, mesh%ghost, flow%layout%n_rows, i, j, k, before(:, 1, :, :), w)
+              call mean_of_neighbours(mesh%active, mesh%ghost, flow%layout%n_rows, coupling%closed_from, i, j, k, &
+                                      before(:, 1, :, :), w)
               cell = w(i, :, j, k)
               call close_cell(flow%layout, flow%eos, cell)
               w(i, :, j, k) = cell
@@ -200,9 +215,10 @@ contains
   end subroutine answer_for_gas
 
   !> Sets the state of a cell to the mean of those face neighbours that were open before.
-  subroutine mean_of_neighbours(active, ghost, n_rows, i, j, k, before, w)
+  subroutine mean_of_neighbours(active, ghost, n_rows, closed_from, i, j, k, before, w)
     logical, intent(in) :: active(3)
     integer, intent(in) :: ghost(3), n_rows, i, j, k
+    real(wp), intent(in) :: closed_from
     real(wp), intent(in) :: before(1 - ghost(1):, 1 - ghost(2):, 1 - ghost(3):)
     real(wp), intent(inout) :: w(1 - ghost(1):, :, 1 - ghost(2):, 1 - ghost(3):)
     real(wp) :: mean(n_rows)
@@ -214,7 +230,7 @@ contains
       do side = -1, 1, 2
         c = [i, j, k]
         c(d) = c(d) + side
-        if (before(c(1), c(2), c(3)) > interface_cell + 0.5_wp) cycle
+        if (before(c(1), c(2), c(3)) > closed_from) cycle
         mean = mean + w(c(1), :n_rows, c(2), c(3))
         n = n + 1
       end do
@@ -222,10 +238,12 @@ contains
     if (n > 0) w(i, :n_rows, j, k) = mean/n
   end subroutine mean_of_neighbours
 
-  !> Velocity of the solid in the interface cells, from the nodes (eq. 29).
-  subroutine find_wall_velocity(mesh, solid, coupling)
+  !> Velocity of the solid in the interface cells, from the nodes (eq. 29); where walls move, the flow gets it with their normals.
+  subroutine find_wall_velocity(mesh, halo, solid, flow, coupling)
     type(mesh_type), intent(in) :: mesh
+    type(halo_type), intent(inout) :: halo
     type(solid_type), intent(in) :: solid
+    type(flow_type), intent(inout) :: flow
     type(coupling_type), intent(inout) :: coupling
     type(cell_frame) :: frame
     integer :: b, c
@@ -237,7 +255,38 @@ contains
         end do
       end associate
     end do
+    if (coupling%moving_wall) call set_walls(mesh, halo, flow, coupling)
   end subroutine find_wall_velocity
+
+  !> Velocities and normals of walls that move, for the flow.
+  subroutine set_walls(mesh, halo, flow, coupling)
+    type(mesh_type), intent(in) :: mesh
+    type(halo_type), intent(inout) :: halo
+    type(flow_type), intent(inout) :: flow
+    type(coupling_type), intent(inout) :: coupling
+    integer :: b, c
+    flow%slip = coupling%slip
+    call fill(mesh, halo, coupling%solid_part, 1)
+    do b = 1, mesh%n_local
+      call mirror_ghosts(mesh, mesh%local(b), coupling%solid_part(b))
+      call smooth_part(mesh%brick_cells, mesh%active, mesh%ghost, coupling%solid_part(b)%a(:, 1, :, :))
+    end do
+    call fill(mesh, halo, coupling%solid_part, 1)
+    do b = 1, mesh%n_local
+      call mirror_ghosts(mesh, mesh%local(b), coupling%solid_part(b))
+      if (.not. allocated(flow%wall(b)%a)) call allocate_cells(flow%wall(b), mesh%brick_cells, mesh%ghost, 6, 0.0_wp)
+      do c = 1, coupling%list(b)%n
+        associate (cell => coupling%list(b)%cell(:, c))
+          flow%wall(b)%a(cell(1), 1:3, cell(2), cell(3)) = coupling%list(b)%velocity(:, c)
+        end associate
+      end do
+    end do
+    call fill(mesh, halo, flow%wall, 3, only_faces=.true.)
+    do b = 1, mesh%n_local
+      call wall_normals(mesh%brick_cells, mesh%active, mesh%ghost, mesh%spacing, coupling%solid_part(b)%a(:, 1, :, :), &
+        coupling%kind(b)%a(:, 1, :, :) > coupling%closed_from, flow%wall(b)%a)
+    end do
+  end subroutine set_walls
 
   !> Forces the state that the step starts from: the solid has moved since the last stage.
   subroutine force_first_state(mesh, flow, coupling)
@@ -263,6 +312,7 @@ contains
     integer, intent(in) :: buffer
     real(wp), intent(in) :: weight
     integer :: b
+    if (coupling%moving_wall) return
     do b = 1, mesh%n_local
       if (coupling%list(b)%n == 0) cycle
       call force_velocity(flow%layout%n_materials, flow%layout%velocity(1), mesh%ghost, weight, mesh%cell_volume, &

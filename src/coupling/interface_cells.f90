@@ -17,14 +17,16 @@ module interface_cells
 
 contains
 
-  !> Lists the interface cells. kind: with ghost layers, see cell_types; a face is closed where an inside cell lies behind it.
-  subroutine list_interface(n, ghost, kind, interface_kind, inside_kind, list)
+  !> Lists the interface cells. kind: with ghost layers, see cell_types; behind: kind of the cells that lie behind closed faces:
+  !> inside cells where the interface cells flow, else fluid.
+  subroutine list_interface(n, ghost, kind, interface_kind, behind, list)
     integer, intent(in) :: n(3), ghost(3)
     real(wp), intent(in) :: kind(1 - ghost(1):, 1 - ghost(2):, 1 - ghost(3):)
-    real(wp), intent(in) :: interface_kind, inside_kind
+    real(wp), intent(in) :: interface_kind, behind
     type(interface_list), intent(inout) :: list
-    integer :: i, j, k, c
+    integer :: i, j, k, c, sign
     real(wp), parameter :: half = 0.5_wp
+    sign = merge(1, -1, behind > interface_kind) ! an interface cell feels what is inside on its high side, or open on its low side
     list%n = count(abs(kind(1:n(1), 1:n(2), 1:n(3)) - interface_kind) < half)
     if (allocated(list%cell)) deallocate (list%cell, list%closed, list%velocity, list%impulse)
     allocate (list%cell(3, list%n), list%closed(3, list%n))
@@ -40,6 +42,7 @@ contains
           if (ghost(1) > 0) list%closed(1, c) = step(kind(i + 1, j, k)) - step(kind(i - 1, j, k))
           if (ghost(2) > 0) list%closed(2, c) = step(kind(i, j + 1, k)) - step(kind(i, j - 1, k))
           if (ghost(3) > 0) list%closed(3, c) = step(kind(i, j, k + 1)) - step(kind(i, j, k - 1))
+          list%closed(:, c) = sign*list%closed(:, c)
         end do
       end do
     end do
@@ -48,7 +51,7 @@ contains
 
     pure integer function step(neighbour)
       real(wp), intent(in) :: neighbour
-      step = merge(1, 0, abs(neighbour - inside_kind) < half)
+      step = merge(1, 0, abs(neighbour - behind) < half)
     end function step
 
   end subroutine list_interface
@@ -87,7 +90,6 @@ contains
     real(wp), intent(inout) :: reference(3)
     integer :: c
     do c = 1, list%n
-      if (all(list%closed(:, c) == 0)) cycle
       list%impulse(:, c) = list%impulse(:, c) + (wall(list%cell(1, c), 1:3, list%cell(2, c), list%cell(3, c)) &
                                                  - pressure_impulse*list%closed(:, c))
       reference = reference + pressure_impulse*list%closed(:, c)

@@ -6,7 +6,8 @@ module deck_coupling
   public :: coupling_keys
 
   type, public :: coupling_group
-    character(word_length) :: method = 'lg_cfibm' !< or 'none'
+    character(word_length) :: method = 'lg_cfibm' !< or 'moving_wall', 'none'
+    character(word_length) :: wall = 'slip' !< or 'no_slip'; of moving walls
     integer :: line = 0
   end type coupling_group
 
@@ -16,7 +17,8 @@ contains
     type(coupling_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
     call table%start('coupling', group%line)
-    call table%add('method', group%method, [character(word_length) :: 'lg_cfibm', 'none'])
+    call table%add('method', group%method, [character(word_length) :: 'lg_cfibm', 'moving_wall', 'none'])
+    call table%add('wall', group%wall, [character(word_length) :: 'slip', 'no_slip'])
   end subroutine coupling_keys
 
 end module deck_coupling

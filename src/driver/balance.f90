@@ -49,6 +49,9 @@ contains
         balance%unburnt = unburnt_energy(scene%mesh, scene%flow)
         balance%energy = flow%kinetic + sum(flow%internal) + balance%unburnt - flow%afterburnt - sum(flow%entered(e, :))
         balance%boundary_energy = sum(flow%entered(e, :))
+        balance%mass = balance%mass - sum(flow%through_walls(:n))
+        balance%momentum = balance%momentum - flow%through_walls(m:m + 2)
+        balance%energy = balance%energy - flow%through_walls(e)
         balance%momentum_scale = sum(abs(flow%momentum)) + sum(abs(flow%entered(m:m + 2, :)))
       end associate
     end if

@@ -47,7 +47,7 @@ contains
     type(scene_type), intent(inout) :: scene
     call scene%watch%start('coupling')
     call immerse_solid(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
-    call find_wall_velocity(scene%mesh, scene%solid, scene%coupling)
+    call find_wall_velocity(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
     call scene%watch%stop('coupling')
   end subroutine meet_solid
 

@@ -70,7 +70,9 @@ contains
     end if
     if (scene%coupled) then
       ambient = scene%deck%flow%ambient_pressure
-      call start_coupling(scene%coupling, scene%mesh, scene%flow, ambient)
+      call start_coupling(scene%coupling, scene%mesh, scene%flow, ambient, &
+                          trim(lowercase(scene%deck%coupling%method)) == 'moving_wall')
+      scene%coupling%slip = trim(lowercase(scene%deck%coupling%wall)) == 'slip'
       call immerse_solid(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
     end if
   end subroutine make_scene

@@ -6,7 +6,7 @@ module brick_stage
   use face_states, only: all_open, flatten_next_to_closed, replace_near_closed, take_cell_values
   use fifth_order_upwind, only: reconstruct_fifth_order, keep_below_one
   use flow_differences, only: difference_fluxes, difference_radial_fluxes, add_gravity
-  use flow_layout, only: layout_type, book_afterburn
+  use flow_layout, only: layout_type, book_afterburn, book_walls
   use flow_scheme, only: scheme_type, fifth_order, third_order
   use equation_of_state, only: eos_type
   use interface_sharpening, only: sharpen_faces
@@ -16,6 +16,7 @@ module brick_stage
   use shock_sensor, only: sense_shocks, dissipate_shear
   use update_materials, only: update_row, row_scratch, row_report
   use update_single, only: update_gas, update_stored_energy
+  use wall_faces, only: wall_flux
   implicit none
   private
   public :: advance_brick, prepare_scratch
@@ -35,6 +36,7 @@ module brick_stage
     real(wp) :: floor_pressure = 0
     real(wp) :: lowest = 0 !< pressures at or below it are bad
     real(wp) :: gravity(3) = 0
+    logical :: slip = .true. !< gas glides along walls that move
     real(wp), allocatable :: burn_energy(:) !< of each material, per mass; 0 where it does not burn
     real(wp), allocatable :: burn_rate(:) !< one over the time that a cell takes to burn
     real(wp), allocatable :: afterburn(:) !< energy per mass of each material that the whole step releases
@@ -101,11 +103,11 @@ contains
   !> cells of a row.
   !> Optional, of bricks that have such cells: open: 1 where open, 0 where closed; impulse: the momentum that closed cells receive
   !> is added to the open cell beside them; troubled: 1 where all fluxes are to be of first order; arrival: time at which a
-  !> detonation front passes.
+  !> detonation front passes; wall: velocity and normal of walls that move, whose impulse is added to the closed cell.
   subroutine advance_brick(n, g, ld, layout, eos, stage, eps2, steepest, positive, at_face, area, volume, from, start, new, &
     booked, s, &
     report, &
-      open, impulse, troubled, arrival)
+      open, impulse, troubled, arrival, wall)
     integer, intent(in) :: n(3), g(3), ld
     type(layout_type), intent(in) :: layout
     type(eos_type), intent(in) :: eos(layout%n_materials)
@@ -122,6 +124,7 @@ contains
     real(wp), intent(in), optional, dimension(1 - g(1):ld - g(1), 1, 1 - g(2):n(2) + g(2), 1 - g(3):n(3) + g(3)) :: open, &
       troubled, &
       arrival
+    real(wp), intent(in), optional :: wall(1 - g(1):ld - g(1), 6, 1 - g(2):n(2) + g(2), 1 - g(3):n(3) + g(3))
     real(wp), intent(inout), optional :: impulse(1 - g(1):ld - g(1), 3, 1 - g(2):n(2) + g(2), 1 - g(3):n(3) + g(3))
     real(wp) :: rate(3), weight(3), over_h(3)
     integer :: j, k, cell_y, face_y, cell_z, face_z, c, x_cells, x_faces, stride(3), reach, back(3), last
@@ -295,8 +298,47 @@ contains
       end if
       if (.not. present(open)) return
       if (all_open(n_faces, 1, 1, open(1 - back, 1, jl, kl)) .and. all_open(n_faces, 1, 1, open(1, 1, jr, kr))) return
-      call close_row(n_faces, direction, jl, kl, jr, kr, back, flux)
+      if (present(wall)) then
+        call move_row(n_faces, direction, jl, kl, jr, kr, back, flux)
+      else
+        call close_row(n_faces, direction, jl, kl, jr, kr, back, flux)
+      end if
     end subroutine flux_across
+
+    !> Makes moving walls of the faces of closed cells, notes the momentum that these receive and what passes through.
+    subroutine move_row(n_faces, direction, jl, kl, jr, kr, back, flux)
+      integer, intent(in) :: n_faces, direction, jl, kl, jr, kr, back
+      real(wp), intent(inout) :: flux(ld, *)
+      integer :: i
+      do i = 1, min(n_faces, n(1) + back) ! without the padding along x
+        if (open(i - back, 1, jl, kl) > 0 .and. open(i, 1, jr, kr) > 0) cycle
+        if (open(i - back, 1, jl, kl) > 0) then
+          call move_face(direction, 1, [i - back, jl, kl], [i, jr, kr], flux(i, 1:layout%n_fluxes))
+        else if (open(i, 1, jr, kr) > 0) then
+          call move_face(direction, -1, [i, jr, kr], [i - back, jl, kl], flux(i, 1:layout%n_fluxes))
+        else
+          flux(i, 1:layout%n_fluxes) = 0
+        end if
+      end do
+    end subroutine move_row
+
+    !> side: 1 where the closed cell lies behind the open one.
+    subroutine move_face(direction, side, cell, closed, flux)
+      integer, intent(in) :: direction, side, cell(3), closed(3)
+      real(wp), intent(out) :: flux(layout%n_fluxes)
+      real(wp) :: pressure
+      integer :: q
+      associate (i => closed(1), j => closed(2), k => closed(3))
+        call wall_flux(layout, eos, direction, side, from(cell(1), :, cell(2), cell(3)), wall(i, 1:3, j, k), &
+          wall(cell(1), 4:6, cell(2), cell(3)), stage%slip, stage%lowest, flux, pressure)
+        impulse(i, direction, j, k) = impulse(i, direction, j, k) + side*weight(direction)*pressure
+      end associate
+      if (any(cell < 1) .or. any(cell > n)) return
+      do q = 1, layout%n_conserved
+        booked(q, book_walls) = booked(q, book_walls) - side*weight(direction) &
+          *(flux(q) - merge(pressure, 0.0_wp, q == layout%momentum_flux + direction - 1))
+      end do
+    end subroutine move_face
 
     !> Makes walls of the faces of closed cells, and notes the momentum that these receive.
     subroutine close_row(n_faces, direction, jl, kl, jr, kr, back, flux)
@@ -367,6 +409,11 @@ contains
       integer, intent(in) :: j, k
       type(row_report) :: row
       integer :: v
+      if (present(wall) .and. present(open)) then ! what passes walls is nothing to the cells behind
+        do v = 1, layout%n_fluxes
+          where (open(1:n(1), 1, j, k) <= 0) s%d(1:n(1), v) = 0
+        end do
+      end if
       if (layout%n_materials > 1) then
         call update_row(n(1), ld, layout, eos, stage%first, stage%part, stage%trace, stage%floor_pressure, stage%lowest, s%d, &
           from(1, 1, j, k), start(1, 1, j, k), new(1, 1, j, k), s%row, row)

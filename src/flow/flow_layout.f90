@@ -11,7 +11,8 @@ module flow_layout
   private
   public :: new_layout, max_materials
 
-  integer, parameter, public :: book_afterburn = 7 !< of what is booked: after the six faces, what afterburn releases
+  !> Of what is booked, after the six faces of the domain: what afterburn releases, what passes walls that move or stand askew.
+  integer, parameter, public :: book_afterburn = 7, book_walls = 8, n_flow_books = 8
 
   type, public :: layout_type
     integer :: n_materials = 1

@@ -4,7 +4,7 @@ module flow_state
   use blocks, only: block, allocate_cells
   use brick_stage, only: stage_scratch
   use equation_of_state, only: eos_type
-  use flow_layout, only: layout_type, new_layout, book_afterburn
+  use flow_layout, only: layout_type, new_layout, n_flow_books
   use flow_scheme, only: scheme_type
   use kinds, only: wp, i8
   use mesh, only: mesh_type
@@ -49,6 +49,8 @@ module flow_state
     real(wp), allocatable :: inflow(:) !< rows of the state that enters
     type(block), allocatable :: open(:) !< 1 flows, 0 closed; allocated only in bricks with closed cells; ghosts filled
     type(block), allocatable :: wall_impulse(:) !< momentum (3) given to closed cells, in the open cell beside them; with open
+    type(block), allocatable :: wall(:) !< of walls that move: velocity (3) in closed cells, normal (3) in open ones beside them
+    logical :: slip = .true. !< gas glides along walls that move
     type(block), allocatable :: troubled(:) !< 1 where a stage is redone with first-order fluxes; allocated while that goes on
     type(block), &
       allocatable :: arrival(:) !< of the detonation front; allocated in bricks that hold explosive still to burn; with ghosts
@@ -57,7 +59,7 @@ module flow_state
     real(wp) :: burn_end = 0 !< time at which all has burnt
     real(wp) :: burn_total = 0 !< energy that burning releases from the start to the end
     type(afterburn_type), allocatable :: afterburn(:) !< of each material
-    real(wp), allocatable :: books(:, :, :) !< what entered: conserved quantity, face (x low, x high, ...) or afterburn, local brick
+    real(wp), allocatable :: books(:, :, :) !< what entered: conserved quantity, face (x low, x high, ...) or book_*, local brick
     type(repair_log) :: repairs
     type(stage_scratch) :: scratch
   contains
@@ -79,7 +81,7 @@ contains
     flow%name = name
     flow%eos = eos
     flow%layout = new_layout(eos)
-    allocate (flow%w(mesh%n_local, 3), flow%open(mesh%n_local), flow%wall_impulse(mesh%n_local), &
+    allocate (flow%w(mesh%n_local, 3), flow%open(mesh%n_local), flow%wall_impulse(mesh%n_local), flow%wall(mesh%n_local), &
       flow%troubled(mesh%n_local), flow%arrival(mesh%n_local))
     allocate (flow%eps2(flow%layout%n_reconstructed), source=no_noise)
     allocate (flow%steepest(flow%layout%n_reconstructed), source=4.0_wp)
@@ -96,7 +98,7 @@ contains
     end do
     allocate (flow%burn_energy(size(eos)), flow%burn_rate(size(eos)), source=0.0_wp)
     allocate (flow%afterburn(size(eos)))
-    allocate (flow%books(flow%layout%n_conserved, book_afterburn, mesh%n_local), source=0.0_wp)
+    allocate (flow%books(flow%layout%n_conserved, n_flow_books, mesh%n_local), source=0.0_wp)
     do buffer = 1, 3
       do b = 1, mesh%n_local
         call allocate_cells(flow%w(b, buffer), mesh%brick_cells, mesh%ghost, flow%layout%n_rows, 1.0_wp)

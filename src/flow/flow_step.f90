@@ -114,6 +114,7 @@ contains
     plan%floor_pressure = flow%floor_pressure
     plan%lowest = flow%lowest_pressure()
     plan%gravity = flow%gravity
+    plan%slip = flow%slip
     plan%burn_energy = flow%burn_energy
     plan%burn_rate = flow%burn_rate
     plan%afterburn = released_in_step(flow%afterburn, flow%time, dt)
@@ -139,7 +140,7 @@ contains
     call advance_brick(mesh%brick_cells, mesh%ghost, size(flow%w(b, 1)%a, 1), flow%layout, flow%eos, plan, flow%eps2, &
       flow%steepest, flow%positive, at_face, x_face_areas(mesh, b), cell_volumes(mesh, b), flow%w(b, from)%a, &
       flow%w(b, start)%a, flow%w(b, new)%a, flow%books(:, :, b), flow%scratch, report, flow%open(b)%a, flow%wall_impulse(b)%a, &
-      flow%troubled(b)%a, flow%arrival(b)%a)
+      flow%troubled(b)%a, flow%arrival(b)%a, flow%wall(b)%a)
   end subroutine advance_one
 
 end module flow_step

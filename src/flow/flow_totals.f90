@@ -1,7 +1,7 @@
 !> Sums over the flow: masses, momentum and energies of the open cells, what entered through the faces of the domain, and
 !> what afterburn released.
 module flow_totals
-  use flow_layout, only: book_afterburn
+  use flow_layout, only: book_afterburn, book_walls, n_flow_books
   use flow_state, only: flow_type
   use geometry, only: cell_volumes
   use kinds, only: wp
@@ -17,6 +17,7 @@ module flow_totals
     real(wp), allocatable :: internal(:) !< by material
     real(wp) :: kinetic = 0
     real(wp), allocatable :: entered(:, :) !< conserved quantity, face (x low, x high, y low, ...) since the start
+    real(wp), allocatable :: through_walls(:) !< conserved quantities that walls that move gave, without what pressure does
     real(wp) :: afterburnt = 0 !< energy that afterburn has released since the start
   end type flow_totals_type
 
@@ -32,7 +33,7 @@ contains
     integer :: n, b, ld, sums, booked, q
     n = flow%n_materials
     sums = 2*n + 4
-    booked = book_afterburn*flow%layout%n_conserved
+    booked = n_flow_books*flow%layout%n_conserved
     allocate (partial(sums + booked, mesh%n_local), total(sums + booked))
     do b = 1, mesh%n_local
       ld = size(flow%w(b, 1)%a, 1)
@@ -53,8 +54,9 @@ contains
     totals%internal = total(n + 1:2*n)
     totals%momentum = total(2*n + 1:2*n + 3)
     totals%kinetic = total(2*n + 4)
-    books = reshape(total(sums + 1:), [flow%layout%n_conserved, book_afterburn])
+    books = reshape(total(sums + 1:), [flow%layout%n_conserved, n_flow_books])
     totals%entered = books(:, :6)
+    totals%through_walls = books(:, book_walls)
     totals%afterburnt = books(flow%layout%energy_flux, book_afterburn)
     if (mesh%radial_power > 0) then
       totals%momentum(1) = 0
