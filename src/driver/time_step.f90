@@ -36,7 +36,8 @@ contains
         else
           dt = flow%dt
           ! a rigid body follows each step of the flow, which costs little
-          if (flow%dt < 0.5_wp*solid%dt .and. .not. all(scene%solid%material%model == model_rigid)) dt = min(most_parts*flow%dt, solid%dt)
+          if (flow%dt < 0.5_wp*solid%dt .and. .not. all(scene%solid%material%model == model_rigid)) &
+            dt = min(most_parts*flow%dt, solid%dt)
           clock%limiter = flow_limiter(scene, flow)
         end if
       else if (scene%has_solid) then
