@@ -6,6 +6,7 @@ module main_loop
   use immersed_boundary, only: immerse_solid, find_wall_velocity, force_first_state, force_stage, collect_force
   use kinds, only: wp
   use records, only: records_type, record_step, stop_if_asked
+  use rigid_bodies, only: load_rigid
   use scene, only: scene_type
   use solid_step, only: advance_solid
   use time_step, only: choose_time_step, flow_part
@@ -97,6 +98,7 @@ contains
     scene%solid%time = scene%clock%time
     scene%solid%limiter = scene%clock%limiter
     dt = scene%clock%dt/scene%clock%solid_steps
+    if (scene%coupled .and. scene%solid%rigid_field > 0) call load_rigid(scene%mesh, scene%solid, scene%coupling%force)
     do part = 1, scene%clock%solid_steps
       if (scene%coupled) then
         call advance_solid(scene%mesh, scene%halo, scene%solid, dt, scene%coupling%force)

@@ -1,22 +1,22 @@
 !> Rigid bodies made of particles: model = 'rigid'. Mass, centre and inertia are those of the particles; forces come from the load on
 !> the cells that hold them and from gravity; the particles follow the body exactly, since each keeps its place in it.
 !>
-!> Rigid particles have a velocity field of their own, whose nodes move as the body does: the flow sees the right wall velocity, and
-!> the books of impulse and work close as for other particles. Supports of the mesh do not hold a rigid body, only its own do.
+!> Rigid particles have a velocity field of their own, whose nodes move as the body does: the flow sees the right wall velocity.
+!> Supports of the mesh do not hold a rigid body, only its own do.
 module rigid_bodies
+  use blocks, only: block
   use cell_functions, only: cell_frame
   use kinds, only: wp
   use mesh, only: mesh_type
   use particles, only: at_mass, at_position, at_velocity
   use reductions, only: reduce_sum
   use rigid_motion, only: rigid_body, push_body, turn_body, find_angular_velocity, velocity_at, cross_product
-  use solid_load, only: loaded_cells
   use solid_material, only: model_rigid
-  use solid_state, only: solid_type, frame_of, book_impulse, n_supports
+  use solid_state, only: solid_type, frame_of, book_impulse, book_coupling_impulse, book_coupling_work, n_supports
   use tensor_functions, only: control_point, functions_of, line_functions
   implicit none
   private
-  public :: start_rigid, push_rigid, turn_rigid, place_rigid, set_rigid_nodes, change_rigid_nodes, pack_rigid, unpack_rigid
+  public :: start_rigid, push_rigid, load_rigid, turn_rigid, place_rigid, set_rigid_nodes, pack_rigid, unpack_rigid
 
   integer, parameter :: n_stored = 28 !< numbers of a body in a restart file
 
@@ -27,7 +27,7 @@ contains
   subroutine start_rigid(mesh, solid)
     type(mesh_type), intent(in) :: mesh
     type(solid_type), intent(inout) :: solid
-    real(wp) :: partial(7, size(solid%rigid), mesh%n_local), total(7*size(solid%rigid)), arm(3), tensor(3, 3)
+    real(wp) :: partial(7, size(solid%rigid), mesh%n_local), total(7*size(solid%rigid)), arm(3), tensor(3, 3), trace
     integer :: b, set, i, r, d
     if (size(solid%rigid) == 0) return
     partial = 0
@@ -70,10 +70,15 @@ contains
     do r = 1, size(solid%rigid)
       associate (body => solid%rigid(r), s => total(7*r - 6:7*r))
         tensor = -reshape([s(1), s(6), s(5), s(6), s(2), s(4), s(5), s(4), s(3)], [3, 3])
+        trace = s(1) + s(2) + s(3)
         do d = 1, 3
-          ! a row of particles would have no inertia about itself
-          tensor(d, d) = tensor(d, d) + (s(1) + s(2) + s(3))*(1 + 1e-9_wp)
+          tensor(d, d) = tensor(d, d) + trace
         end do
+        if (dot_product(tensor(:, 1), cross_product(tensor(:, 2), tensor(:, 3))) < 1e-12_wp*trace**3) then
+          do d = 1, 3
+            tensor(d, d) = tensor(d, d) + 1e-9_wp*trace ! a row of particles has no inertia about itself
+          end do
+        end if
         body%inertia = tensor
         body%angular_momentum = merge(matmul(tensor, merge(body%angular_velocity, 0.0_wp, body%free_axis)), 0.0_wp, body%free_axis)
         call find_angular_velocity(body)
@@ -86,38 +91,69 @@ contains
     end do
   end subroutine start_rigid
 
-  !> Velocities of the bodies over dt under the forces on their particles, which are given by cell and brick, and gravity.
-  subroutine push_rigid(mesh, solid, dt, loaded)
+  !> Finds the force on each body and its moment about the centre, which push_rigid applies until this is called again. load: force
+  !> on each cell of a brick (3 variables, no ghosts; unallocated: none), shared equally by its particles of all sets.
+  subroutine load_rigid(mesh, solid, load)
     type(mesh_type), intent(in) :: mesh
     type(solid_type), intent(inout) :: solid
-    real(wp), intent(in) :: dt
-    type(loaded_cells), intent(in) :: loaded(:)
-    real(wp) :: partial(6, size(solid%rigid), mesh%n_local), total(6*size(solid%rigid)), held(3), arm(3)
-    integer :: b, n, set, i, r, cell
+    type(block), intent(in) :: load(:)
+    real(wp) :: partial(6, size(solid%rigid), mesh%n_local), total(6*size(solid%rigid)), force(3), arm(3)
+    integer :: b, set, i, j, k, q, r, cell
     partial = 0
     do b = 1, mesh%n_local
-      do n = 1, loaded(b)%n
-        cell = loaded(b)%cell(1, n) + mesh%brick_cells(1)*(loaded(b)%cell(2, n) - 1 &
-          + mesh%brick_cells(2)*(loaded(b)%cell(3, n) - 1))
-        do set = 1, solid%n_sets
-          if (solid%material(set)%model /= model_rigid .or. solid%block(set, b)%n == 0) cycle
-          associate (blk => solid%block(set, b), at => solid%material(set)%at_own, force => loaded(b)%force(:, n))
-            do i = blk%cell_start(cell), blk%cell_start(cell + 1) - 1
-              r = solid%rigid_of_body(blk%body(i))
-              arm = matmul(solid%rigid(r)%rotation, blk%f(i, at:at + 2))
-              partial(:, r, b) = partial(:, r, b) + [force, cross_product(arm, force)]
+      if (.not. allocated(load(b)%a)) cycle
+      do set = 1, solid%n_sets
+        if (solid%material(set)%model /= model_rigid .or. solid%block(set, b)%n == 0) cycle
+        associate (blk => solid%block(set, b), at => solid%material(set)%at_own)
+          cell = 0
+          do k = 1, mesh%brick_cells(3)
+            do j = 1, mesh%brick_cells(2)
+              do i = 1, mesh%brick_cells(1)
+                cell = cell + 1
+                if (blk%cell_start(cell + 1) == blk%cell_start(cell)) cycle
+                force = load(b)%a(i, 1:3, j, k)/solid%count(b)%a(i, 1, j, k)
+                if (.not. any(abs(force) > 0)) cycle
+                do q = blk%cell_start(cell), blk%cell_start(cell + 1) - 1
+                  r = solid%rigid_of_body(blk%body(q))
+                  arm = matmul(solid%rigid(r)%rotation, blk%f(q, at:at + 2))
+                  partial(:, r, b) = partial(:, r, b) + [force, cross_product(arm, force)]
+                end do
+              end do
             end do
-          end associate
-        end do
+          end do
+        end associate
       end do
     end do
     call reduce_sum(mesh, reshape(partial, [6*size(solid%rigid), mesh%n_local]), total)
     do r = 1, size(solid%rigid)
-      call push_body(solid%rigid(r), dt, total(6*r - 5:6*r - 3), total(6*r - 2:6*r), solid%gravity, held)
-      if (mesh%n_local == 0) cycle
-      if (mesh%local(1) /= 1) cycle ! booked once, in the first brick of all
-      associate (book => solid%books(book_impulse + 3*(n_supports - 1):book_impulse + 3*n_supports - 1, 1))
-        book = book + held
+      solid%rigid(r)%force = total(6*r - 5:6*r - 3)
+      solid%rigid(r)%moment = total(6*r - 2:6*r)
+    end do
+  end subroutine load_rigid
+
+  !> Velocities of the bodies over dt under the forces of load_rigid and gravity; impulse and work go to the books.
+  subroutine push_rigid(mesh, solid, dt)
+    type(mesh_type), intent(in) :: mesh
+    type(solid_type), intent(inout) :: solid
+    real(wp), intent(in) :: dt
+    real(wp) :: held(3), velocity(3), angular_velocity(3)
+    integer :: r
+    do r = 1, size(solid%rigid)
+      associate (body => solid%rigid(r))
+        velocity = 0.5_wp*body%velocity
+        angular_velocity = 0.5_wp*body%angular_velocity
+        call push_body(body, dt, body%force, body%moment, solid%gravity, held)
+        velocity = velocity + 0.5_wp*body%velocity
+        angular_velocity = angular_velocity + 0.5_wp*body%angular_velocity
+        if (mesh%n_local == 0) cycle
+        if (mesh%local(1) /= 1) cycle ! booked once, in the first brick of all
+        associate (books => solid%books(:, 1), last => book_impulse + 3*n_supports - 1)
+          books(last - 2:last) = books(last - 2:last) + held
+          books(book_coupling_impulse:book_coupling_impulse + 2) = books(book_coupling_impulse:book_coupling_impulse + 2) &
+            + dt*body%force
+          books(book_coupling_work) = books(book_coupling_work) &
+            + dt*(dot_product(body%force, velocity) + dot_product(body%moment, angular_velocity))
+        end associate
       end associate
     end do
   end subroutine push_rigid
@@ -190,19 +226,6 @@ contains
       end do
     end associate
   end subroutine set_rigid_nodes
-
-  !> The same after push_rigid; the change goes where the other fields have theirs.
-  subroutine change_rigid_nodes(mesh, solid, b)
-    type(mesh_type), intent(in) :: mesh
-    type(solid_type), intent(inout) :: solid
-    integer, intent(in) :: b
-    if (.not. allocated(solid%node(solid%rigid_field, b)%a)) return
-    associate (node => solid%node(solid%rigid_field, b)%a, change => solid%force(solid%rigid_field, b)%a)
-      change = node(:, 2:4, :, :)
-      call set_rigid_nodes(mesh, solid, b)
-      change = node(:, 2:4, :, :) - change
-    end associate
-  end subroutine change_rigid_nodes
 
   pure function node_velocity(mesh, solid, b, r, node) result(velocity)
     type(mesh_type), intent(in) :: mesh

@@ -20,6 +20,7 @@ module rigid_motion
     real(wp) :: angular_momentum(3) = 0 !< about the centre; components about axes that are held mean nothing
     real(wp) :: rotation(3, 3) = reshape([real(wp) :: 1, 0, 0, 0, 1, 0, 0, 0, 1], [3, 3]) !< from the start to now
     real(wp) :: angular_velocity(3) = 0 !< follows from the orientation and the angular momentum
+    real(wp) :: force(3) = 0, moment(3) = 0 !< of the load, about the centre
     logical :: free(3) = .true. !< directions in which the centre moves
     logical :: free_axis(3) = .true. !< axes about which the body turns
   end type rigid_body

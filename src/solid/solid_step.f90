@@ -12,7 +12,7 @@ module solid_step
   use migration, only: route_particle, exchange_particles, outbox_type
   use particle_checks, only: check_particles
   use particles, only: particle_block, cell_of_particle
-  use rigid_bodies, only: push_rigid, turn_rigid, place_rigid, set_rigid_nodes, change_rigid_nodes
+  use rigid_bodies, only: push_rigid, turn_rigid, place_rigid, set_rigid_nodes
   use solid_load, only: loaded_cells, apply_load, book_load
   use solid_material, only: model_rigid
   use solid_state, only: solid_type, limit_type, frame_of, match_nodes, book_impulse, book_gravity_impulse, n_supports, &
@@ -110,7 +110,7 @@ contains
       end if
       call book_supports(solid, b, dt)
     end do
-    if (solid%rigid_field > 0) call push_rigid(mesh, solid, dt, loaded)
+    if (solid%rigid_field > 0) call push_rigid(mesh, solid, dt)
     do field = 1, solid%n_fields
       if (field == solid%rigid_field) cycle
       call add(mesh, halo, solid%force(field, :), 3, solid%order)
@@ -123,7 +123,6 @@ contains
     end do
     do b = 1, mesh%n_local
       if (.not. allocated(solid%count(b)%a)) cycle
-      if (solid%rigid_field > 0) call change_rigid_nodes(mesh, solid, b)
       call book_load(solid, b, dt, frame_of(mesh, solid%order, b), loaded(b))
       call change_velocities(mesh, solid, b)
     end do
