@@ -77,9 +77,9 @@ contains
     m = find_material(deck, body%material)
     if (m == 0) return
     if (deck%material(m)%model /= 'rigid') then
-      if (table%is_given('fixed')) call problems%add_at_key(table, 'fixed', only_rigid)
-      if (table%is_given('fixed_rotation')) call problems%add_at_key(table, 'fixed_rotation', only_rigid)
-      if (table%is_given('angular_velocity')) call problems%add_at_key(table, 'angular_velocity', only_rigid)
+      if (body%fixed /= '') call problems%add_at_key(table, 'fixed', only_rigid)
+      if (body%fixed_rotation /= '') call problems%add_at_key(table, 'fixed_rotation', only_rigid)
+      if (any(abs(body%angular_velocity) > 0.0_wp)) call problems%add_at_key(table, 'angular_velocity', only_rigid)
       return
     end if
     if (any(abs(body%velocity_gradient) > 0.0_wp)) call problems%add_at_key(table, 'velocity_gradient', &
@@ -131,7 +131,7 @@ contains
         '; parts of the same name are one body')
       if (abs(other%spacing - body%spacing) > 0.0_wp) call problems%add_at_key(table, 'spacing', 'body '''// &
         trim(body%name)//''' has another spacing on line '//str(other%line)//'; parts of the same name are one body')
-      if (table%is_given('fixed') .or. table%is_given('fixed_rotation') .or. table%is_given('angular_velocity')) &
+      if (body%fixed /= '' .or. body%fixed_rotation /= '' .or. any(abs(body%angular_velocity) > 0.0_wp)) &
         call problems%add_at_key(table, '', 'fixed, fixed_rotation and angular_velocity of body '''//trim(body%name)// &
         ''' belong to its first part, on line '//str(other%line))
     end associate
