@@ -8,7 +8,7 @@ module body_loads
   use kinds, only: wp
   use mesh, only: mesh_type
   use particles, only: at_mass, at_position, at_velocity, load_overpressure, load_peak, load_impulse, load_arrival, &
-    load_not_wetted, load_not_reached
+    load_not_wetted, load_not_reached, n_load_columns
   use reductions, only: reduce_sum
   use rigid_motion, only: cross_product
   use solid_state, only: solid_type
@@ -27,7 +27,7 @@ module body_loads
 
   !> The loads on all bodies at one time.
   type, public :: body_sums
-    real(wp), allocatable :: force(:, :), moment(:, :) !< (3, body) mean of the last step; moment about the centre of mass
+    real(wp), allocatable :: force(:, :), moment(:, :) !< (3, body) mean of the last step; moment about where the centre of mass was then
     real(wp), allocatable :: impulse(:, :) !< since the start
     real(wp), allocatable :: center(:, :), velocity(:, :) !< of mass
   end type body_sums
@@ -60,7 +60,7 @@ contains
     type(interface_list), intent(in) :: list(:)
     real(wp), intent(in) :: face(3), time, dt
     real(wp) :: share(3), pressure
-    integer :: b, set, c, i, cell, first, last
+    integer :: b, set, c, cell, first, last
     loads%latest = 0
     loads%duration = dt
     do b = 1, mesh%n_local
@@ -79,37 +79,54 @@ contains
             associate (blk => solid%block(set, b))
               first = blk%cell_start(cell)
               last = blk%cell_start(cell + 1) - 1
-              do i = first, last
-                associate (latest => loads%latest(:, blk%body(i), b))
-                  latest = latest + [share, cross_product(blk%f(i, at_position:at_position + 2), share)]
-                end associate
-              end do
-              call note_pressure(last - first + 1, blk%f(first:, solid%at_load(set):), pressure)
+              if (last < first) cycle
+              call share_impulse(first, last, blk%capacity, blk%f(:, at_position:at_position + 2), blk%body, share, &
+                                 loads%latest(:, :, b))
+              call note_pressure(first, last, blk%capacity, blk%f(:, solid%at_load(set):solid%at_load(set) + n_load_columns - 1), &
+                                 pressure, time, dt, loads%threshold)
             end associate
           end do
         end associate
       end do
     end do
     loads%impulse = loads%impulse + loads%latest(1:3, :, :)
-
-  contains
-
-    !> columns: of n particles of one cell, from load_overpressure on.
-    subroutine note_pressure(n, columns, pressure)
-      integer, intent(in) :: n
-      real(wp), intent(inout) :: columns(:, 0:)
-      real(wp), intent(in) :: pressure
-      integer :: i
-      do i = 1, n
-        columns(i, load_overpressure) = pressure
-        columns(i, load_peak) = max(columns(i, load_peak), pressure)
-        columns(i, load_impulse) = columns(i, load_impulse) + dt*pressure
-        if (columns(i, load_arrival) >= 0) cycle
-        columns(i, load_arrival) = merge(time, load_not_reached, pressure > loads%threshold)
-      end do
-    end subroutine note_pressure
-
   end subroutine gather_loads
+
+  !> Gives each particle first..last its share of the impulse; latest: of each body, with the moment about the origin.
+  pure subroutine share_impulse(first, last, capacity, position, body, share, latest)
+    integer, intent(in) :: first, last, capacity
+    real(wp), intent(in) :: position(capacity, 3), share(3)
+    integer, intent(in) :: body(capacity)
+    real(wp), intent(inout) :: latest(:, :)
+    real(wp) :: place(3)
+    integer :: i, from
+    from = first
+    do i = first, last ! in runs of the same body
+      if (i < last) then
+        if (body(i + 1) == body(from)) cycle
+      end if
+      place = [sum(position(from:i, 1)), sum(position(from:i, 2)), sum(position(from:i, 3))]
+      latest(1:3, body(from)) = latest(1:3, body(from)) + (i - from + 1)*share
+      latest(4:6, body(from)) = latest(4:6, body(from)) + cross_product(place, share)
+      from = i + 1
+    end do
+  end subroutine share_impulse
+
+  !> Takes the pressure of a cell to its particles first..last. felt: their columns, from load_overpressure on.
+  pure subroutine note_pressure(first, last, capacity, felt, pressure, time, dt, threshold)
+    integer, intent(in) :: first, last, capacity
+    real(wp), intent(inout) :: felt(capacity, 0:n_load_columns - 1)
+    real(wp), intent(in) :: pressure, time, dt, threshold
+    real(wp) :: arrival
+    integer :: i
+    arrival = merge(time, load_not_reached, pressure > threshold)
+    do i = first, last
+      felt(i, load_overpressure) = pressure
+      felt(i, load_peak) = max(felt(i, load_peak), pressure)
+      felt(i, load_impulse) = felt(i, load_impulse) + dt*pressure
+      felt(i, load_arrival) = merge(felt(i, load_arrival), arrival, felt(i, load_arrival) >= 0)
+    end do
+  end subroutine note_pressure
 
   !> Pressure over the reference that makes this force on the closed faces of a cell. closed: by direction, high less low. A cell
   !> without any, or with one on either side, is a body as thin as a cell or its edge: the force over the face that feels most of it.
@@ -133,7 +150,7 @@ contains
     type(solid_type), intent(in) :: solid
     type(body_sums) :: sums
     integer, parameter :: width = 16
-    real(wp) :: partial(width, solid%n_bodies, mesh%n_local), total(width*solid%n_bodies), mass
+    real(wp) :: partial(width, solid%n_bodies, mesh%n_local), total(width*solid%n_bodies), mass, acted(3)
     integer :: b, set, i, body
     partial = 0
     do b = 1, mesh%n_local
@@ -158,7 +175,8 @@ contains
         sums%center(:, body) = s(11:13)/mass
         sums%velocity(:, body) = s(14:16)/mass
         sums%force(:, body) = s(1:3)/loads%duration
-        sums%moment(:, body) = s(4:6)/loads%duration - cross_product(sums%center(:, body), sums%force(:, body))
+        acted = sums%center(:, body) - loads%duration*sums%velocity(:, body)
+        sums%moment(:, body) = s(4:6)/loads%duration - cross_product(acted, sums%force(:, body))
         sums%impulse(:, body) = s(7:9)
       end associate
     end do
