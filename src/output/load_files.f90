@@ -3,12 +3,13 @@
 module load_files
   use body_loads, only: body_sums
   use csv_series, only: series, open_series, put_row
+  use hdf5_attributes, only: put_attribute
   use kinds, only: wp
   use mesh, only: mesh_type
-  use particles, only: at_position, load_overpressure, load_peak, load_impulse, load_arrival, load_not_wetted
+  use particles, only: at_position, at_volume, load_overpressure, load_peak, load_impulse, load_arrival, load_not_wetted
   use snapshot_header, only: snapshot_clock
   use solid_state, only: solid_type
-  use text, only: append
+  use text, only: append, join
   use units, only: unit_labels_type
   use vtkhdf_points, only: close_point_file, create_point_file, point_file, put_points
   implicit none
@@ -87,8 +88,9 @@ contains
     type(solid_type), intent(in) :: solid
     type(unit_labels_type), intent(in) :: labels
     type(point_file) :: file
-    real(wp), allocatable :: position(:), felt(:, :)
+    real(wp), allocatable :: position(:), felt(:, :), volume(:)
     integer, allocatable :: body(:), id(:)
+    character(:), allocatable :: unit
     integer :: b, set, i, n, pass
     do pass = 1, 2
       n = 0
@@ -101,19 +103,25 @@ contains
               if (pass == 1) cycle
               position(3*n - 2:3*n) = blk%f(i, at_position:at_position + 2)
               felt(n, :) = blk%f(i, at:at + load_arrival)
+              volume(n) = blk%f(i, at_volume)
               body(n) = blk%body(i)
               id(n) = blk%id(i)
             end do
           end associate
         end do
       end do
-      if (pass == 1) allocate (position(3*n), felt(n, load_overpressure:load_arrival), body(n), id(n))
+      if (pass == 1) allocate (position(3*n), felt(n, load_overpressure:load_arrival), volume(n), body(n), id(n))
     end do
+    unit = trim(labels%length)
+    if (unit /= '-') unit = unit//'^3'
     call create_point_file(file, name, clock, mesh, position)
+    call put_attribute(file%hdf5, 'brisance', 'materials', join(solid%material%name, ';'))
+    call put_attribute(file%hdf5, 'brisance', 'bodies', join(solid%body_name, ';'))
     call put_points(file, 'overpressure', labels%pressure, felt(:, load_overpressure))
     call put_points(file, 'peak_overpressure', labels%pressure, felt(:, load_peak))
     call put_points(file, 'impulse', labels%impulse, felt(:, load_impulse))
     call put_points(file, 'arrival_time', labels%time, felt(:, load_arrival))
+    call put_points(file, 'volume', unit, volume)
     call put_points(file, 'body', '-', body)
     call put_points(file, 'id', '-', id)
     call close_point_file(file)
