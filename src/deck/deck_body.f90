@@ -8,6 +8,7 @@ module deck_body
   private
   public :: body_keys, hole_keys
 
+  character(word_length), parameter :: directions(8) = [character(word_length) :: '', 'x', 'y', 'z', 'xy', 'xz', 'yz', 'xyz']
   character(word_length), parameter :: shapes(4) = [character(word_length) :: 'box', 'sphere', 'cylinder', 'ogive']
 
   !> Bodies of the same name are one body: their union.
@@ -24,6 +25,10 @@ module deck_body
     real(wp) :: velocity(3) = 0 !< at the origin of the coordinates
     real(wp) :: velocity_gradient(3) = 0 !< the velocity in x, y, z grows by this per length in x, y, z
     real(wp) :: pressure = unset !< of a fluid at the start
+    ! rigid bodies
+    character(word_length) :: fixed = '' !< directions in which the centre does not move
+    character(word_length) :: fixed_rotation = '' !< axes about which the body does not turn
+    real(wp) :: angular_velocity(3) = 0 !< about the centre of mass, at the start
     integer :: line = 0
   end type body_group
 
@@ -58,6 +63,9 @@ contains
     call table%add('velocity', group%velocity, of_velocity, usual=[-1e5_wp, 1e5_wp])
     call table%add('velocity_gradient', group%velocity_gradient, of_rate)
     call table%add('pressure', group%pressure, of_pressure)
+    call table%add('fixed', group%fixed, directions)
+    call table%add('fixed_rotation', group%fixed_rotation, directions)
+    call table%add('angular_velocity', group%angular_velocity, of_rate)
   end subroutine body_keys
 
   subroutine hole_keys(group, table)

@@ -183,7 +183,7 @@ contains
     names = [character(key_length) ::]
     if (model == '') return
     names = [character(key_length) :: 'density']
-    if (model == 'fluid') return
+    if (model == 'fluid' .or. model == 'rigid') return
     names = [character(key_length) :: names, 'youngs_modulus', 'poissons_ratio']
     select case (model)
     case ('perfect_plasticity')
@@ -214,8 +214,8 @@ contains
       names = [character(key_length) :: names, 'energy_offset']
     if (material%eos == 'jwl') names = [character(key_length) :: names, 'afterburn_energy', 'afterburn_start', 'afterburn_end']
     if (material%eos == 'polynomial') names = [character(key_length) :: names, 'polynomial_k2', 'polynomial_k3']
-    if (material%model /= '') names = [character(key_length) :: names, 'bulk_viscosity_linear', 'bulk_viscosity_quadratic', &
-      'failure', 'failure_strain']
+    if (material%model /= '' .and. material%model /= 'rigid') names = [character(key_length) :: names, 'bulk_viscosity_linear', &
+      'bulk_viscosity_quadratic', 'failure', 'failure_strain']
     select case (material%model)
     case ('elastic')
       names = [character(key_length) :: names, 'tensile_limit']

@@ -55,6 +55,7 @@ contains
       else if (m > 0) then
         if (deck%material(m)%model == '') call problems%add_at_key(table, 'material', 'material '''//trim(test%material)// &
           ''' has no model')
+        if (deck%material(m)%model == 'rigid') call problems%add_at_key(table, 'material', 'a rigid material has no stress')
         if (deck%material(m)%model == 'fluid' .and. (test%path == 'uniaxial_stress' .or. test%path == 'triaxial')) &
           call problems%add_at_key(table, 'path', 'a fluid has no lateral stress of its own')
       end if

@@ -15,6 +15,8 @@ module deck_check_solid
   private
   public :: check_solid
 
+  character(*), parameter :: only_rigid = 'only a rigid body (model = ''rigid'') has it'
+
 contains
 
   !> Checks all groups that make the solid. Names of materials and bodies take the spelling of their definition.
@@ -24,6 +26,7 @@ contains
     type(problem_list), intent(inout) :: problems, warnings
     integer :: i
     call check_numerics(deck, tables(find_table(tables, 'solid', 1)), problems)
+    call check_loads(deck, tables(find_table(tables, 'output', 1)), problems)
     do i = 1, size(deck%body)
       call check_body(deck, deck%body(i), i, tables(find_table(tables, 'body', i)), problems, warnings)
     end do
@@ -53,6 +56,46 @@ contains
     end if
   end subroutine check_numerics
 
+  !> Loads are those of the flow on the solid.
+  subroutine check_loads(deck, table, problems)
+    type(deck_type), intent(in) :: deck
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems
+    if (.not. deck%output%loads) return
+    if (.not. (deck%has_flow .and. deck%has_solid) .or. deck%coupling%method == 'none') &
+      call problems%add_at_key(table, 'loads', 'there is no load without a flow, a body and a coupling')
+  end subroutine check_loads
+
+  !> Rigid bodies: what only they have, and what they lack.
+  subroutine check_rigid(deck, body, i, table, problems, warnings)
+    type(deck_type), intent(in) :: deck
+    type(body_group), intent(in) :: body
+    integer, intent(in) :: i !< number of the body
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems, warnings
+    integer :: m, j
+    m = find_material(deck, body%material)
+    if (m == 0) return
+    if (deck%material(m)%model /= 'rigid') then
+      if (body%fixed /= '') call problems%add_at_key(table, 'fixed', only_rigid)
+      if (body%fixed_rotation /= '') call problems%add_at_key(table, 'fixed_rotation', only_rigid)
+      if (any(abs(body%angular_velocity) > 0.0_wp)) call problems%add_at_key(table, 'angular_velocity', only_rigid)
+      return
+    end if
+    if (any(abs(body%velocity_gradient) > 0.0_wp)) call problems%add_at_key(table, 'velocity_gradient', &
+      'a rigid body has none; angular_velocity makes it turn')
+    do j = 1, size(deck%reinforcement)
+      if (find_body(deck, deck%reinforcement(j)%body) == find_body(deck, body%name)) call problems%add_at_key(table, 'material', &
+        'a rigid body has no reinforcement')
+    end do
+    do j = 1, size(deck%body)
+      if (find_body(deck, deck%body(j)%name) == find_body(deck, body%name)) cycle
+      if (find_body(deck, body%name) /= i) cycle
+      call warnings%add_at_key(table, 'material', 'a rigid body meets the flow only: it passes through other bodies')
+      exit
+    end do
+  end subroutine check_rigid
+
   subroutine check_body(deck, body, i, table, problems, warnings)
     type(deck_type), intent(in) :: deck
     type(body_group), intent(inout) :: body
@@ -78,6 +121,7 @@ contains
       if (deck%material(find_material(deck, body%material))%model /= 'fluid') call problems%add_at_key(table, 'pressure', &
         'only a fluid (model = ''fluid'') starts under a pressure')
     end if
+    call check_rigid(deck, body, i, table, problems, warnings)
     first = find_body(deck, body%name)
     if (first == i .or. first == 0 .or. body%name == '') return
     associate (other => deck%body(first))
@@ -87,6 +131,9 @@ contains
         '; parts of the same name are one body')
       if (abs(other%spacing - body%spacing) > 0.0_wp) call problems%add_at_key(table, 'spacing', 'body '''// &
         trim(body%name)//''' has another spacing on line '//str(other%line)//'; parts of the same name are one body')
+      if (body%fixed /= '' .or. body%fixed_rotation /= '' .or. any(abs(body%angular_velocity) > 0.0_wp)) &
+        call problems%add_at_key(table, '', 'fixed, fixed_rotation and angular_velocity of body '''//trim(body%name)// &
+        ''' belong to its first part, on line '//str(other%line))
     end associate
   end subroutine check_body
 
@@ -118,6 +165,10 @@ contains
     if (complete) call check_axis(bars%start, bars%end, deck%mesh, table, problems, complete)
     call refer_to_body(deck, bars%body, table, problems)
     call refer_to_solid(deck, bars%material, table, problems)
+    i = find_material(deck, bars%material)
+    if (i > 0) then
+      if (deck%material(i)%model == 'rigid') call problems%add_at_key(table, 'material', 'reinforcement is never rigid')
+    end if
     if (bars%count > 1 .and. .not. any(abs(bars%step) > 0.0_wp)) &
       call problems%add_at_key(table, 'count', str(bars%count)//' bars need a step from one to the next')
     i = find_body(deck, bars%body)
@@ -144,6 +195,8 @@ contains
     if (material == 0) return
     if (deck%material(material)%model == 'fluid') call problems%add_at_key(table, '', 'material '''// &
       trim(deck%material(material)%name)//''' is a fluid: it has no strength')
+    if (deck%material(material)%model == 'rigid') call problems%add_at_key(table, '', 'material '''// &
+      trim(deck%material(material)%name)//''' is rigid: it has no strength')
     if (deck%material(material)%model == 'neo_hookean') call problems%add_at_key(table, '', 'material '''// &
       trim(deck%material(material)%name)//''' (neo_hookean) has no strength that could vary')
     if (deck%material(material)%model /= 'fluid' .and. deck%material(material)%eos /= '') call problems%add_at_key(table, '', &

@@ -13,9 +13,9 @@ module deck_material
     [character(word_length) :: '', 'ideal_gas', 'stiffened_gas', 'jwl', 'cochran_chan', 'shock', 'polynomial']
   character(word_length), parameter, public :: solid_eos_names(3) = & !< from which a metal can take its pressure
     [character(word_length) :: 'cochran_chan', 'shock', 'polynomial']
-  character(word_length), parameter, public :: model_names(11) = [character(word_length) :: '', 'elastic', &
+  character(word_length), parameter, public :: model_names(12) = [character(word_length) :: '', 'elastic', &
     'perfect_plasticity', 'linear_hardening', 'johnson_cook', 'simplified_johnson_cook', 'hjc', 'rht', 'drucker_prager', &
-    'neo_hookean', 'fluid']
+    'neo_hookean', 'fluid', 'rigid']
 
   !> Real constants that neither the deck nor the library gives are `unset`.
   type, public :: material_group

@@ -21,6 +21,7 @@ module deck_output
     logical :: fragments = .false. !< of the solid, counted with each snapshot
     real(wp) :: fragment_reach = 1.8_wp !< distance over spacing up to which particles hang together
     real(wp) :: fragment_damage = 1 !< particles of at least this damage belong to no fragment
+    logical :: loads = .false. !< of the flow on each body: their history, and maps on its surface
     integer :: line = 0
   end type output_group
 
@@ -42,6 +43,7 @@ contains
     call table%add('fragments', group%fragments)
     call table%add('fragment_reach', group%fragment_reach, more_than=1.0_wp, at_most=10.0_wp)
     call table%add('fragment_damage', group%fragment_damage, more_than=0.0_wp)
+    call table%add('loads', group%loads)
   end subroutine output_keys
 
 end module deck_output

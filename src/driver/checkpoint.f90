@@ -10,6 +10,7 @@ module checkpoint
   use restart_files, only: restart_file, create_restart, open_restart, close_restart
   use restart_particles, only: restart_put_particles, restart_get_particles
   use restart_values, only: restart_put, restart_get
+  use rigid_bodies, only: pack_rigid, unpack_rigid
   use scene, only: scene_type
   use solid_step, only: project_solid
   implicit none
@@ -42,12 +43,15 @@ contains
       end if
       if (scene%has_solid) then
         call restart_put_particles(file, scene%solid%block)
+        if (scene%solid%rigid_field > 0) call restart_put(file, 'rigid_bodies', pack_rigid(scene%solid%rigid))
         call restart_put_table(file, 'solid_books', [(size(scene%solid%books, 1), b=1, mesh%n_local)], &
                                reshape(scene%solid%books, [size(scene%solid%books)]))
       end if
       if (scene%coupled) then
         call restart_put_blocks(file, 'cell_type', scene%coupling%kind, 1 - mesh%ghost, mesh%brick_cells + mesh%ghost)
         call restart_put(file, 'coupling_books', scene%coupling%books)
+        if (scene%loads%active) call restart_put_table(file, 'loads', [(size(scene%loads%impulse(:, :, b)), b=1, mesh%n_local)], &
+                                                       reshape(scene%loads%impulse, [size(scene%loads%impulse)]))
       end if
       if (allocated(peaks%map)) call restart_put_blocks(file, 'peaks', peaks%map, one, mesh%brick_cells)
     end associate
@@ -85,12 +89,21 @@ contains
         call restart_get_particles(file, mesh, scene%solid%block)
         call restart_get_table(file, 'solid_books', counts, values)
         scene%solid%books = reshape(values, shape(scene%solid%books))
+        if (scene%solid%rigid_field > 0) then
+          values = pack_rigid(scene%solid%rigid)
+          call restart_get(file, 'rigid_bodies', values)
+          call unpack_rigid(values, scene%solid%rigid)
+        end if
         call project_solid(mesh, scene%halo, scene%solid)
       end if
       if (scene%coupled) then
         call restart_get_blocks(file, 'cell_type', scene%coupling%kind, 1 - mesh%ghost, mesh%brick_cells + mesh%ghost)
         call restart_get(file, 'coupling_books', scene%coupling%books)
         call restore_coupling(mesh, scene%flow, scene%coupling)
+        if (scene%loads%active) then
+          call restart_get_table(file, 'loads', counts, values)
+          scene%loads%impulse = reshape(values, shape(scene%loads%impulse))
+        end if
       end if
       if (allocated(peaks%map)) call restart_get_blocks(file, 'peaks', peaks%map, one, mesh%brick_cells)
     end associate

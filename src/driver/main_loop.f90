@@ -1,10 +1,12 @@
 !> The method, step by step: reading this from top to bottom tells what a step does.
 module main_loop
+  use body_loads, only: gather_loads
   use burn, only: end_burn
   use flow_step, only: advance_stage, accept_step
   use immersed_boundary, only: immerse_solid, find_wall_velocity, force_first_state, force_stage, collect_force
   use kinds, only: wp
   use records, only: records_type, record_step, stop_if_asked
+  use rigid_bodies, only: load_rigid
   use scene, only: scene_type
   use solid_step, only: advance_solid
   use time_step, only: choose_time_step, flow_part
@@ -37,6 +39,7 @@ contains
     call choose_time_step(scene, next_event)
     if (scene%coupled) call meet_solid(scene)
     if (scene%has_flow) call advance_flow(scene)
+    if (scene%loads%active) call note_loads(scene)
     if (scene%has_solid) call advance_structure(scene)
     scene%clock%time = scene%clock%time + scene%clock%dt
     scene%clock%step = scene%clock%step + 1
@@ -76,6 +79,15 @@ contains
     if (scene%coupled) call collect_force(scene%mesh, scene%flow, scene%coupling, scene%clock%dt)
   end subroutine advance_flow
 
+  !> What the bodies felt in the step, while the particles are still where they felt it.
+  subroutine note_loads(scene)
+    type(scene_type), intent(inout) :: scene
+    call scene%watch%start('loads')
+    call gather_loads(scene%loads, scene%mesh, scene%solid, scene%coupling%list, scene%coupling%face, &
+                      scene%clock%time + scene%clock%dt, scene%clock%dt)
+    call scene%watch%stop('loads')
+  end subroutine note_loads
+
   !> The solid over the step, in equal parts under the same force.
   subroutine advance_structure(scene)
     type(scene_type), intent(inout) :: scene
@@ -86,6 +98,7 @@ contains
     scene%solid%time = scene%clock%time
     scene%solid%limiter = scene%clock%limiter
     dt = scene%clock%dt/scene%clock%solid_steps
+    if (scene%coupled .and. scene%solid%rigid_field > 0) call load_rigid(scene%mesh, scene%solid, scene%coupling%force)
     do part = 1, scene%clock%solid_steps
       if (scene%coupled) then
         call advance_solid(scene%mesh, scene%halo, scene%solid, dt, scene%coupling%force)

@@ -1,6 +1,7 @@
 !> What a run writes while it goes: gauges, history, snapshots, peak maps, restart files, report lines; and when it is to stop.
 module records
   use balance, only: balance_type, take_balance
+  use body_loads, only: sum_loads
   use checkpoint, only: save_run, resume_run
   use csv_series, only: series, close_series, flush_series
   use deck, only: write_deck
@@ -11,6 +12,7 @@ module records
   use gauges, only: gauges_type, define_gauges, place_gauges, open_gauges, sample_gauges, close_gauges
   use history, only: open_history, put_history
   use kinds, only: wp, i8
+  use load_files, only: open_loads, put_loads, put_load_map
   use log, only: say
   use mpi_f08, only: MPI_Allreduce, MPI_INTEGER8, MPI_SUM
   use options, only: options_type
@@ -19,6 +21,7 @@ module records
   use report, only: report_figures, report_pace, start_pace, report_line, peak_memory
   use restart_files, only: newest_restart, forget_restarts
   use scene, only: scene_type
+  use snapshot_header, only: snapshot_clock
   use snapshots, only: snapshots_type, start_snapshots, put_flow_snapshot, put_solid_snapshot, put_peak_snapshot, &
     step_text
   use stopping, only: stop_reason, wall_seconds, go_on, reason_name
@@ -34,7 +37,7 @@ module records
     character(:), allocatable :: folder
     type(unit_labels_type) :: labels
     type(gauges_type) :: gauges
-    type(series) :: history
+    type(series) :: history, loads
     type(snapshots_type) :: snapshots
     type(peak_maps_type) :: peaks
     type(fragment_list) :: fragments !< of the last snapshot
@@ -79,6 +82,8 @@ contains
         call resume_run(scene, restart, records%folder, records%gauges, records%peaks, records%first)
         call say('going on from '//restart)
         call open_history(records%history, records%folder//'/history.csv', scene, records%labels, scene%clock%time)
+        if (scene%loads%active) call open_loads(records%loads, records%folder//'/loads.csv', scene%solid%body_name( &
+          :scene%solid%n_bodies), scene%mesh%active, records%labels, scene%clock%time)
         call start_snapshots(records%snapshots, records%folder, trim(deck%run%title), records%labels, scene%clock%time)
       else
         call make_directory(records%folder)
@@ -91,6 +96,11 @@ contains
         end if
         call open_gauges(records%gauges, records%folder)
         call open_history(records%history, records%folder//'/history.csv', scene, records%labels)
+        if (scene%loads%active) then
+          call open_loads(records%loads, records%folder//'/loads.csv', scene%solid%body_name(:scene%solid%n_bodies), &
+                          scene%mesh%active, records%labels)
+          call put_loads(records%loads, scene%clock%time, scene%mesh%active, sum_loads(scene%loads, scene%mesh, scene%solid))
+        end if
         call start_snapshots(records%snapshots, records%folder, trim(deck%run%title), records%labels)
         balance = take_balance(scene)
         records%first = [balance%mass, balance%momentum, balance%energy]
@@ -124,6 +134,8 @@ contains
       if (report_due .or. history_due) then
         balance = take_balance(scene)
         if (history_due) call put_history(records%history, scene, balance)
+        if (history_due .and. scene%loads%active) call put_loads(records%loads, clock%time, scene%mesh%active, &
+                                                                 sum_loads(scene%loads, scene%mesh, scene%solid))
         if (report_due) call report_progress(scene, records, balance)
       end if
       if (clock%time >= records%next_snapshot) then
@@ -172,6 +184,7 @@ contains
     call report_progress(scene, records, balance)
     call close_gauges(records%gauges)
     call close_series(records%history)
+    if (scene%loads%active) call close_series(records%loads)
     call scene%watch%stop('output')
     figures%status = status
     figures%steps = scene%clock%step - records%first_step
@@ -230,6 +243,9 @@ contains
       else if (scene%has_solid .and. scene%deck%output%solid_snapshots) then
         call put_solid_snapshot(records%snapshots, scene%mesh, clock%time, clock%step, solid)
       end if
+      if (scene%loads%active) call put_load_map(records%folder//'/loads_'//step_text(clock%step)//'.vtkhdf', &
+        snapshot_clock(trim(scene%deck%run%title), records%labels%length, records%labels%time, clock%time, clock%step), &
+        scene%mesh, solid, records%labels)
     end associate
   end subroutine put_snapshot
 
@@ -254,6 +270,7 @@ contains
     records%last_restart_step = scene%clock%step
     began = wall_seconds()
     call flush_series(records%history)
+    if (scene%loads%active) call flush_series(records%loads)
     call save_run(scene, records%folder, records%gauges, records%peaks, records%first)
     records%restart_seconds = max(records%restart_seconds, wall_seconds() - began)
     call schedule(scene, records)

@@ -1,5 +1,6 @@
 !> All that a run holds: the deck, the mesh, the three solvers' states, the clock, and what is written.
 module scene
+  use body_loads, only: body_loads_type
   use deck_types, only: deck_type
   use flow_state, only: flow_type
   use halo, only: halo_type
@@ -31,6 +32,7 @@ module scene
     type(flow_type) :: flow
     type(solid_type) :: solid
     type(coupling_type) :: coupling
+    type(body_loads_type) :: loads
     type(clock_type) :: clock
     type(stopwatch) :: watch !< wall time by phase
   end type scene_type

@@ -1,5 +1,6 @@
 !> From the deck to a scene that is ready to run.
 module setup
+  use body_loads, only: start_loads
   use deck, only: read_deck
   use flow_initial, only: setup_flow, flow_scheme_of
   use flow_scheme, only: ghost_layers
@@ -74,6 +75,7 @@ contains
                           trim(lowercase(scene%deck%coupling%method)) == 'moving_wall')
       scene%coupling%slip = trim(lowercase(scene%deck%coupling%wall)) == 'slip'
       call immerse_solid(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
+      if (scene%deck%output%loads) call start_loads(scene%loads, scene%mesh, scene%solid, 0.01_wp*abs(ambient))
     end if
   end subroutine make_scene
 

@@ -4,6 +4,7 @@ module time_step
   use flow_time_step, only: flow_limit, flow_limit_type
   use kinds, only: wp
   use scene, only: scene_type
+  use solid_material, only: model_rigid
   use solid_time_step, only: solid_limit, solid_limit_type
   use text, only: str
   implicit none
@@ -34,7 +35,9 @@ contains
           clock%limiter = solid_limiter(scene, solid)
         else
           dt = flow%dt
-          if (flow%dt < 0.5_wp*solid%dt) dt = min(most_parts*flow%dt, solid%dt)
+          ! a rigid body follows each step of the flow, which costs little
+          if (flow%dt < 0.5_wp*solid%dt .and. .not. all(scene%solid%material%model == model_rigid)) &
+            dt = min(most_parts*flow%dt, solid%dt)
           clock%limiter = flow_limiter(scene, flow)
         end if
       else if (scene%has_solid) then

@@ -18,6 +18,10 @@ module particles
   integer, parameter, public :: at_damage = 18 !< damage, 0 sound to 1
   integer, parameter, public :: at_plastic_work = 19 !< plastic work of the particle (an energy)
   integer, parameter, public :: n_fields_basic = 19 !< columns that every particle has; what a material needs besides follows them
+  !> Columns of the loads that the flow makes on the surface, where a material has them.
+  integer, parameter, public :: load_overpressure = 0, load_peak = 1, load_impulse = 2, load_arrival = 3
+  integer, parameter, public :: n_load_columns = 4
+  real(wp), parameter, public :: load_not_wetted = -2, load_not_reached = -1 !< values of load_arrival
   !> Names of the columns, for output and restart.
   character(16), parameter, public :: field_name(n_fields_basic) = [character(16) :: &
     'position_x', 'position_y', 'position_z', 'velocity_x', 'velocity_y', 'velocity_z', 'mass', 'volume', &

@@ -61,7 +61,7 @@ contains
       end do
       last = functions_in(frame, [i, j, k])
       do field = 1, solid%n_fields
-        if (.not. allocated(solid%force(field, b)%a)) cycle
+        if (.not. allocated(solid%force(field, b)%a) .or. field == solid%rigid_field) cycle
         do d = 1, 3
           associate (at => solid%force(field, b)%a(i - 1:i - 2 + last(1), d, j - 1:j - 2 + last(2), k - 1:k - 2 + last(3)))
             at = at + loaded%force(d, n)*loaded%weight(:last(1), :last(2), :last(3), field, n)
@@ -88,7 +88,7 @@ contains
       k = loaded%cell(3, n)
       last = functions_in(frame, [i, j, k])
       do field = 1, solid%n_fields
-        if (.not. allocated(solid%force(field, b)%a)) cycle
+        if (.not. allocated(solid%force(field, b)%a) .or. field == solid%rigid_field) cycle ! which has books of its own
         do d = 1, 3
           associate (weight => loaded%weight(:last(1), :last(2), :last(3), field, n), to => [i, j, k] - 2 + last, &
                      node => solid%node(field, b)%a, change => solid%force(field, b)%a)

@@ -25,6 +25,7 @@ module solid_material
   integer, parameter, public :: model_rht = 8
   integer, parameter, public :: model_drucker_prager = 9
   integer, parameter, public :: model_neo_hookean = 10
+  integer, parameter, public :: model_rigid = 11 !< no law at all: see rigid_bodies
 
   integer, parameter, public :: pressure_of_model = 1 !< the model has its own law
   integer, parameter, public :: pressure_linear = 2 !< K mu
@@ -96,12 +97,18 @@ contains
       m%model = model_neo_hookean
     case ('fluid')
       m%model = model_fluid
+    case ('rigid')
+      m%model = model_rigid
     case default
       call fatal("material '"//trim(group%name)//"': model '"//trim(group%model)//"' is none of the solid's", exit_bad_input)
     end select
     if (m%model == model_fluid) then
       m%eos = eos_of(group)
       m%pressure = pressure_eos
+      return
+    end if
+    if (m%model == model_rigid) then
+      call claim_columns(m, 3, m%at_own) ! the place in the body, at the start
       return
     end if
     m%shear_modulus = group%youngs_modulus/(2*(1 + group%poissons_ratio))

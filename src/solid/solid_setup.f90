@@ -7,8 +7,10 @@ module solid_setup
   use mesh, only: mesh_type
   use particle_fluid, only: fluid_energy, fluid_energy_at, fluid_rest_pressure
   use particle_generation, only: piece_type, body_lattice, bar_lattice, generate_particles
-  use particles, only: allocate_particles
-  use solid_material, only: make_solid_material, claim_columns, model_fluid
+  use particles, only: allocate_particles, n_load_columns
+  use rigid_bodies, only: start_rigid
+  use rigid_motion, only: rigid_body
+  use solid_material, only: make_solid_material, claim_columns, model_fluid, model_rigid
   use solid_shapes, only: shape_type, box_shape, sphere_shape, cylinder_shape, ogive_shape
   use solid_state, only: solid_type, n_books, face_free, face_symmetry, face_clamped, clamp_box, n_cells_of, scheme_musl, &
     scheme_usl, scheme_usf
@@ -35,11 +37,13 @@ contains
     call choose_materials(deck, solid, used)
     call claim_factors(deck, used, solid)
     call number_bodies(deck, solid)
+    call list_rigid(mesh, deck, used, solid)
     call set_supports(mesh, deck, solid)
     call allocate_solid(mesh, solid)
     call make_pieces(mesh, deck, used, solid, pieces)
     call generate_particles(mesh, solid, pieces)
     call set_factors(mesh, deck, used, [(body_number(deck, deck%body(i)%name), i=1, size(deck%body))], pieces, solid)
+    call start_rigid(mesh, solid)
   end subroutine setup_solid
 
   !> Empty particle blocks, books at zero, held nodes: all that follows from the mesh, the materials and the supports.
@@ -104,8 +108,19 @@ contains
     allocate (solid%at_affine(size(used)), source=0)
     do i = 1, size(used)
       solid%material(i) = make_solid_material(deck%material(used(i)), deck%solid%bulk_viscosity)
-      if (deck%solid%transfer == 'apic') call claim_columns(solid%material(i), 9, solid%at_affine(i))
+      if (deck%solid%transfer == 'apic' .and. solid%material(i)%model /= model_rigid) &
+        call claim_columns(solid%material(i), 9, solid%at_affine(i))
     end do
+    if (deck%output%loads) then
+      allocate (solid%at_load(size(used)))
+      do i = 1, size(used)
+        call claim_columns(solid%material(i), n_load_columns, solid%at_load(i))
+      end do
+    end if
+    if (.not. any(solid%material%model == model_rigid)) return
+    if (.not. all(solid%material%model == model_rigid)) solid%n_fields = solid%n_fields + 1
+    solid%rigid_field = solid%n_fields
+    where (solid%material%model == model_rigid) solid%field_of_set = solid%rigid_field
   end subroutine choose_materials
 
   !> Bodies are numbered by their names in the order of the deck.
@@ -120,6 +135,30 @@ contains
       solid%body_name(solid%n_bodies) = deck%body(i)%name
     end do
   end subroutine number_bodies
+
+  !> The rigid bodies in the order of the deck and what each is free to do; in directions without cells there is no motion.
+  subroutine list_rigid(mesh, deck, used, solid)
+    type(mesh_type), intent(in) :: mesh
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: used(:)
+    type(solid_type), intent(inout) :: solid
+    type(rigid_body) :: rigid
+    integer :: i, d, set
+    allocate (solid%rigid(0), solid%rigid_of_body(solid%n_bodies))
+    solid%rigid_of_body = 0
+    do i = 1, size(deck%body)
+      set = findloc(used, find_material(deck, deck%body(i)%material), dim=1)
+      if (solid%material(set)%model /= model_rigid .or. find_body(deck, deck%body(i)%name) /= i) cycle
+      rigid%body = body_number(deck, deck%body(i)%name)
+      do d = 1, 3
+        rigid%free(d) = mesh%active(d) .and. index(deck%body(i)%fixed, 'xyz'(d:d)) == 0
+        rigid%free_axis(d) = all(mesh%active .or. [1, 2, 3] == d) .and. index(deck%body(i)%fixed_rotation, 'xyz'(d:d)) == 0
+      end do
+      rigid%angular_velocity = deck%body(i)%angular_velocity
+      solid%rigid = [solid%rigid, rigid]
+      solid%rigid_of_body(rigid%body) = size(solid%rigid)
+    end do
+  end subroutine list_rigid
 
   !> Number of the body of this name.
   pure integer function body_number(deck, name) result(number)

@@ -5,6 +5,7 @@ module solid_state
   use kinds, only: wp
   use mesh, only: mesh_type
   use particles, only: particle_block, sort_space
+  use rigid_motion, only: rigid_body
   use solid_material, only: solid_material_type
   use cell_functions, only: cell_frame
   implicit none
@@ -67,6 +68,9 @@ module solid_state
     type(particle_block), allocatable :: block(:, :) !< (set, local brick)
     integer :: n_fields = 1 !< velocity fields: sets of the same field stick together
     integer, allocatable :: field_of_set(:)
+    integer :: rigid_field = 0 !< that of the rigid bodies, 0: there are none
+    type(rigid_body), allocatable :: rigid(:)
+    integer, allocatable :: rigid_of_body(:) !< index in rigid of each body, 0: not rigid
     type(block), allocatable :: node(:, :) !< (field, local brick) mass and velocity of nodes (4); unallocated: no particles
     type(block), allocatable :: force(:, :) !< force, later velocity change of the nodes (3)
     type(block), allocatable :: mapped(:, :) !< velocity that strains the particles (3)
@@ -83,6 +87,7 @@ module solid_state
     integer :: scheme = scheme_musl
     real(wp) :: flip = 1 !< part of FLIP, the rest is PIC; 0 with APIC
     integer, allocatable :: at_affine(:) !< by set: first of 9 columns of the affine matrix dv_i/dx_j, row by row; 0 without APIC
+    integer, allocatable :: at_load(:) !< by set: first column of the loads that its particles have felt; unallocated: not asked for
     integer :: step = 0 !< of the scene, for messages
     real(wp) :: time = 0 !< likewise
     character(:), allocatable :: limiter !< what limits the time step, likewise

@@ -13,8 +13,9 @@ module solid_step
   use migration, only: route_particle, exchange_particles, outbox_type
   use particle_checks, only: check_particles
   use particles, only: particle_block, cell_of_particle
+  use rigid_bodies, only: push_rigid, turn_rigid, place_rigid, set_rigid_nodes
   use solid_load, only: loaded_cells, apply_load, book_load
-  use solid_material, only: model_fluid
+  use solid_material, only: model_fluid, model_rigid
   use solid_state, only: solid_type, limit_type, frame_of, match_nodes, book_impulse, book_gravity_impulse, n_supports, &
     scheme_musl, scheme_usf
   use solid_time_step, only: find_limit
@@ -52,6 +53,7 @@ contains
         do field = 1, solid%n_fields
           if (.not. allocated(solid%node(field, b)%a)) cycle
           support%total_mass = support%total_mass + sum(solid%node(field, b)%a(:, 1, :, :))
+          if (field == solid%rigid_field) cycle ! held by supports of their own
           support%mass = support%mass + sum_held(support, 1, 1, solid%node(field, b))
           support%momentum = support%momentum + sum_held(support, 1, 0, solid%node(field, b))
         end do
@@ -63,6 +65,7 @@ contains
         if (.not. allocated(solid%node(field, b)%a)) cycle
         call divide_by_mass(solid%node(field, b)%a(:, 1, :, :), solid%node(field, b)%a(:, 2:4, :, :))
         call hold_nodes(solid%support(b), 1, solid%node(field, b))
+        if (field == solid%rigid_field) call set_rigid_nodes(mesh, solid, b)
       end do
     end do
   end subroutine project_solid
@@ -108,7 +111,9 @@ contains
       end if
       call book_supports(solid, b, dt)
     end do
+    if (solid%rigid_field > 0) call push_rigid(mesh, solid, dt)
     do field = 1, solid%n_fields
+      if (field == solid%rigid_field) cycle
       call add(mesh, halo, solid%force(field, :), 3, solid%order)
       do b = 1, mesh%n_local
         if (.not. allocated(solid%node(field, b)%a)) cycle
@@ -123,10 +128,14 @@ contains
       call change_velocities(mesh, solid, b)
     end do
     call find_straining_velocity(mesh, halo, solid)
+    if (solid%rigid_field > 0) call turn_rigid(mesh, solid, dt)
     do b = 1, mesh%n_local
       do set = 1, solid%n_sets
         if (solid%block(set, b)%n == 0) cycle
-        if (solid%scheme == scheme_usf) then
+        if (solid%material(set)%model == model_rigid) then
+          call place_rigid(mesh, solid, set, b)
+          call route_all(mesh, solid, set, b, outbox)
+        else if (solid%scheme == scheme_usf) then
           call move_and_strain(mesh, solid, dt, 0.0_wp, set, b, outbox)
         else
           call move_and_strain(mesh, solid, dt, dt, set, b, outbox)
@@ -150,6 +159,7 @@ contains
     end do
     do set = 1, solid%n_sets
       field = solid%field_of_set(set)
+      if (field == solid%rigid_field) cycle
       if (solid%block(set, b)%n > 0) call nodes_to_particles(frame, solid%flip, solid%at_affine(set), &
         solid%scheme == scheme_musl, solid%block(set, b), solid%force(field, b)%a, solid%node(field, b)%a, &
         solid%mapped(field, b)%a)
@@ -163,6 +173,7 @@ contains
     type(solid_type), intent(inout) :: solid
     integer :: b, field
     do field = 1, solid%n_fields
+      if (field == solid%rigid_field) cycle
       if (solid%scheme == scheme_musl) call add(mesh, halo, solid%mapped(field, :), 3, solid%order)
       do b = 1, mesh%n_local
         if (.not. allocated(solid%node(field, b)%a)) cycle
@@ -195,8 +206,8 @@ contains
         call allocate_nodes(unused(field), last_node(mesh, solid%order), 4)
       end do
       do set = 1, solid%n_sets
-        if (solid%block(set, b)%n == 0) cycle
         field = solid%field_of_set(set)
+        if (solid%block(set, b)%n == 0 .or. field == solid%rigid_field) cycle
         call move_and_strain(mesh, solid, 0.0_wp, dt, set, b, outbox)
         call particles_to_nodes(frame, solid%at_affine(set), solid%block(set, b), unused(field)%a, solid%force(field, b)%a)
       end do
@@ -235,6 +246,20 @@ contains
       end do
     end do
   end subroutine move_and_strain
+
+  !> Finds the cells of all particles of one set of one brick anew.
+  subroutine route_all(mesh, solid, set, b, outbox)
+    type(mesh_type), intent(in) :: mesh
+    type(solid_type), intent(inout) :: solid
+    integer, intent(in) :: set, b
+    type(outbox_type), intent(inout) :: outbox
+    integer :: cell, i
+    do cell = 1, size(solid%block(set, b)%cell_start) - 1
+      do i = solid%block(set, b)%cell_start(cell), solid%block(set, b)%cell_start(cell + 1) - 1
+        call route_particle(mesh, solid, set, b, i, cell, outbox)
+      end do
+    end do
+  end subroutine route_all
 
   pure subroutine count_particles(blocks, n, counts)
     type(particle_block), intent(in) :: blocks(:)
@@ -317,6 +342,7 @@ contains
     integer :: s, field
     impulse = -(1 - solid%flip)*solid%support(b)%momentum
     do field = 1, solid%n_fields
+      if (field == solid%rigid_field) cycle
       if (allocated(solid%force(field, b)%a)) impulse = impulse - dt*sum_held(solid%support(b), 0, 0, solid%force(field, b))
     end do
     do s = 1, n_supports

@@ -5,6 +5,7 @@ module solid_time_step
   use mesh, only: mesh_type
   use particles, only: at_position, at_velocity, at_mass
   use reductions, only: reduce_max
+  use solid_material, only: model_rigid
   use solid_state, only: solid_type, limit_type, frame_of, scheme_usl
   use stress_update, only: signal_speeds
   implicit none
@@ -13,7 +14,7 @@ module solid_time_step
 
   !> What sets the solid's time step.
   type, public :: solid_limit_type
-    real(wp) :: dt = huge(1.0_wp) !< time step
+    real(wp) :: dt = 0.1_wp*huge(1.0_wp) !< time step
     real(wp) :: position(3) = 0 !< of the particle
     integer :: set = 0 !< its material: index in solid%material
     integer :: id = 0 !< its number
@@ -36,9 +37,13 @@ contains
       do first = 1, blk%n, chunk
         n = min(chunk, blk%n - first + 1)
         call signal_speeds(solid%material(set), n, blk%capacity, size(blk%f, 2), blk%f, first, signal)
-        if (solid%scheme == scheme_usl .and. solid%order == 1) &
-          call heed_light_nodes(frame_of(mesh, solid%order, local), &
-          blk%capacity, size(blk%f, 2), blk%f, blk%cell_start, first, n, cell, signal)
+        if (solid%material(set)%model == model_rigid) then
+          ! no sound; one that is let fall from rest has a speed to come
+          signal(:n) = signal(:n) + sqrt(norm2(solid%gravity)*minval(mesh%spacing, mesh%active))
+        else if (solid%scheme == scheme_usl .and. solid%order == 1) then
+          call heed_light_nodes(frame_of(mesh, solid%order, local), blk%capacity, size(blk%f, 2), blk%f, blk%cell_start, first, &
+            n, cell, signal)
+        end if
         largest = 0
         !$omp simd reduction(max:largest)
         do i = 1, n
