@@ -1,0 +1,160 @@
+!> Contact of bodies that have velocity fields of their own: at nodes that two of them share, they may part freely, may not
+!> approach where their surfaces meet, and rub by Coulomb's law (Bardenhagen, Guilkey et al. 2001).
+!>
+!> The normal is that of the two gradients of volume together (Nairn 2013, Huang et al. 2011), the same for both with opposite
+!> signs, so what one field gains the other loses, to round-off. Fields of which no contact was asked stick to each other, as if
+!> they were one. Pairs are treated in the order of the deck; where more than two fields meet, several times.
+module contact
+  use blocks, only: block
+  use contact_surfaces, only: reach_of
+  use kinds, only: wp
+  use mesh, only: mesh_type
+  use solid_state, only: solid_type, contact_pair, book_contact_impulse, book_contact_work, n_books, n_contact_books
+  implicit none
+  private
+  public :: meet_fields, rub
+
+  integer, parameter :: sweeps = 4 !< over the pairs where more than two fields meet
+
+contains
+
+  !> Changes the velocities of the fields at the shared nodes of local brick b: variables first+1.. of velocity(field).
+  !> change: gets the same changes; books: get this brick's part of impulses and work.
+  subroutine meet_fields(mesh, solid, b, first, velocity, change, books)
+    type(mesh_type), intent(in) :: mesh
+    type(solid_type), intent(in) :: solid
+    integer, intent(in) :: b, first
+    type(block), intent(inout) :: velocity(:)
+    type(block), intent(inout), optional :: change(:)
+    real(wp), intent(inout), optional :: books(:)
+    real(wp), dimension(solid%n_fields) :: mass, volume
+    real(wp) :: v(3, solid%n_fields), old(3, solid%n_fields), surface(6, solid%n_fields), spacing(3)
+    real(wp) :: booked(n_contact_books, size(solid%pair))
+    integer :: n, field, p, at
+    spacing = mesh%spacing
+    if (solid%order == 2) spacing = sqrt(1.5_wp)*mesh%spacing ! splines are wider than linear functions
+    do n = 1, size(solid%meeting(b)%share, 2)
+      associate (node => solid%meeting(b)%node(:, n), share => solid%meeting(b)%share(:, n))
+        do field = 1, solid%n_fields
+          mass(field) = solid%node(field, b)%a(node(1), 1, node(2), node(3))
+          v(:, field) = velocity(field)%a(node(1), first + 1:first + 3, node(2), node(3))
+          surface(:, field) = solid%surface(field, b)%a(node(1), 1:6, node(2), node(3))
+          volume(field) = solid%surface(field, b)%a(node(1), 7, node(2), node(3))
+        end do
+        old = v
+        call meet_at_node(solid%pair, spacing, mass, volume, surface, v, booked)
+        do field = 1, solid%n_fields
+          if (.not. mass(field) > 0) cycle
+          velocity(field)%a(node(1), first + 1:first + 3, node(2), node(3)) = v(:, field)
+          if (present(change)) change(field)%a(node(1), :, node(2), node(3)) = change(field)%a(node(1), :, node(2), node(3)) &
+            + (v(:, field) - old(:, field))
+        end do
+        if (.not. present(books)) cycle
+        do p = 1, size(solid%pair)
+          associate (pair => solid%pair(p)%field)
+            if (.not. all(mass(pair) > 0)) cycle
+            at = n_books + n_contact_books*(p - 1)
+            books(at + 1:at + n_contact_books) = books(at + 1:at + n_contact_books) &
+              + sum(share(pair))/sum(volume(pair))*booked(:, p)
+          end associate
+        end do
+      end associate
+    end do
+  end subroutine meet_fields
+
+  !> All fields at one node. surface: gradient of volume (1..3) and first moment of volume about the node (4..6).
+  pure subroutine meet_at_node(pairs, spacing, mass, volume, surface, v, booked)
+    type(contact_pair), intent(in) :: pairs(:)
+    real(wp), intent(in) :: spacing(3), mass(:), volume(:), surface(:, :)
+    real(wp), intent(inout) :: v(:, :)
+    real(wp), intent(out) :: booked(:, :) !< (n_contact_books, pair)
+    real(wp) :: normal(3, size(pairs)), impulse(3), work
+    logical :: touching(size(pairs))
+    integer :: p, sweep
+    booked = 0
+    do p = 1, size(pairs)
+      touching(p) = all(mass(pairs(p)%field) > 0)
+      if (touching(p)) call look_between(spacing, volume(pairs(p)%field), surface(:, pairs(p)%field), normal(:, p), touching(p))
+    end do
+    do sweep = 1, merge(sweeps, 1, count(mass > 0) > 2)
+      do p = 1, size(pairs)
+        if (.not. touching(p)) cycle
+        associate (a => pairs(p)%field(1), b => pairs(p)%field(2))
+          call rub(pairs(p)%friction, mass([a, b]), normal(:, p), v(:, a), v(:, b), impulse, work)
+        end associate
+        associate (to => booked(:, p))
+          to(book_contact_impulse:book_contact_impulse + 2) = to(book_contact_impulse:book_contact_impulse + 2) + impulse
+          to(book_contact_work) = to(book_contact_work) + work
+        end associate
+      end do
+    end do
+    if (size(mass) > 2) call stick(pairs, mass, v)
+  end subroutine meet_at_node
+
+  !> The normal between two fields, from the first to the second, and whether their surfaces meet along it.
+  pure subroutine look_between(spacing, volume, surface, normal, meet)
+    real(wp), intent(in) :: spacing(3), volume(2), surface(6, 2)
+    real(wp), intent(out) :: normal(3)
+    logical, intent(out) :: meet
+    real(wp) :: length, middle(2)
+    normal = surface(1:3, 1) - surface(1:3, 2)
+    length = norm2(normal)
+    meet = length > 0
+    if (.not. meet) return
+    normal = normal/length
+    length = norm2(spacing*normal)
+    middle(1) = dot_product(surface(4:6, 1), normal)/(volume(1)*length)
+    middle(2) = -dot_product(surface(4:6, 2), normal)/(volume(2)*length)
+    meet = sum(reach_of(middle)) >= 0
+  end subroutine look_between
+
+  !> Two velocities that approach along the normal (from a to b) lose that part of their difference, and of the part across as much
+  !> as friction may take. impulse: on a; work: of friction, that the motion loses.
+  pure subroutine rub(friction, mass, normal, a, b, impulse, work)
+    real(wp), intent(in) :: friction, mass(2), normal(3)
+    real(wp), intent(inout) :: a(3), b(3)
+    real(wp), intent(out) :: impulse(3), work
+    real(wp) :: across(3), jump(3), approach, slip, kept, reduced
+    impulse = 0
+    work = 0
+    approach = dot_product(a - b, normal)
+    if (.not. approach > 0) return
+    across = (a - b) - approach*normal
+    slip = norm2(across)
+    kept = 0
+    if (slip > friction*approach) kept = 1 - friction*approach/slip
+    jump = approach*normal + (1 - kept)*across
+    reduced = mass(1)*(mass(2)/(mass(1) + mass(2)))
+    a = a - (mass(2)/(mass(1) + mass(2)))*jump
+    b = b + (mass(1)/(mass(1) + mass(2)))*jump
+    impulse = -reduced*jump
+    work = 0.5_wp*reduced*slip**2*(1 - kept**2)
+  end subroutine rub
+
+  !> Fields that do not touch by any pair take their common velocity, and so do all that stick to one of them.
+  pure subroutine stick(pairs, mass, v)
+    type(contact_pair), intent(in) :: pairs(:)
+    real(wp), intent(in) :: mass(:)
+    real(wp), intent(inout) :: v(:, :)
+    integer :: group(size(mass)), a, b, p, d, i
+    logical :: together
+    group = [(a, a=1, size(mass))]
+    do a = 1, size(mass) - 1
+      do b = a + 1, size(mass)
+        if (.not. (mass(a) > 0 .and. mass(b) > 0)) cycle
+        together = .true.
+        do p = 1, size(pairs)
+          together = together .and. .not. (all(pairs(p)%field == [a, b]) .or. all(pairs(p)%field == [b, a]))
+        end do
+        if (together) where (group == group(b)) group = group(a)
+      end do
+    end do
+    do i = 1, size(mass)
+      if (count(group == i .and. mass > 0) < 2) cycle
+      do d = 1, 3
+        where (group == i .and. mass > 0) v(d, :) = sum(mass*v(d, :), mask=group == i .and. mass > 0)/sum(mass, mask=group == i)
+      end do
+    end do
+  end subroutine stick
+
+end module contact
