@@ -14,6 +14,8 @@ module contact
   private
   public :: meet_fields, rub
 
+  !> Surfaces meet where they are nearer than this, in cells: what two particles per cell may hide of a surface on the nodes.
+  real(wp), parameter :: closeness = 0.13_wp
   integer, parameter :: sweeps = 4 !< over the pairs where more than two fields meet
 
 contains
@@ -91,21 +93,36 @@ contains
     if (size(mass) > 2) call stick(pairs, mass, v)
   end subroutine meet_at_node
 
-  !> The normal between two fields, from the first to the second, and whether their surfaces meet along it.
+  !> The normal between two fields, from the first to the second, and whether their surfaces meet along it: of the normals of the
+  !> two and that of both together the one along which their surfaces lie farthest apart. So the corner of a block that slides
+  !> on a plane has the normal of the plane.
   pure subroutine look_between(spacing, volume, surface, normal, meet)
     real(wp), intent(in) :: spacing(3), volume(2), surface(6, 2)
     real(wp), intent(out) :: normal(3)
     logical, intent(out) :: meet
-    real(wp) :: length, middle(2)
-    normal = surface(1:3, 1) - surface(1:3, 2)
-    length = norm2(normal)
-    meet = length > 0
-    if (.not. meet) return
-    normal = normal/length
-    length = norm2(spacing*normal)
-    middle(1) = dot_product(surface(4:6, 1), normal)/(volume(1)*length)
-    middle(2) = -dot_product(surface(4:6, 2), normal)/(volume(2)*length)
-    meet = sum(reach_of(middle)) >= 0
+    real(wp) :: candidate(3, 3), size, reach(2), rank, best, distance
+    integer :: c
+    candidate(:, 1) = surface(1:3, 1) - surface(1:3, 2)
+    candidate(:, 2) = surface(1:3, 1)
+    candidate(:, 3) = -surface(1:3, 2)
+    best = -huge(1.0_wp)
+    distance = 0
+    normal = 0
+    do c = 1, 3
+      size = norm2(candidate(:, c))
+      if (.not. size > 0) cycle
+      candidate(:, c) = candidate(:, c)/size
+      size = norm2(spacing*candidate(:, c))
+      reach(1) = reach_of(dot_product(surface(4:6, 1), candidate(:, c))/(volume(1)*size))
+      reach(2) = reach_of(-dot_product(surface(4:6, 2), candidate(:, c))/(volume(2)*size))
+      rank = -sum(reach) - 2*count(reach > 0.85_wp)
+      if (rank > best + 1e-6_wp) then
+        best = rank
+        distance = -sum(reach)
+        normal = candidate(:, c)
+      end if
+    end do
+    meet = best > -huge(1.0_wp) .and. distance < closeness
   end subroutine look_between
 
   !> Two velocities that approach along the normal (from a to b) lose that part of their difference, and of the part across as much
