@@ -1,31 +1,35 @@
 !> Contact of bodies that have velocity fields of their own: at nodes that two of them share, they may part freely, may not
 !> approach where their surfaces meet, and rub by Coulomb's law (Bardenhagen, Guilkey et al. 2001).
 !>
-!> The normal is that of the two gradients of volume together (Nairn 2013, Huang et al. 2011), the same for both with opposite
-!> signs, so what one field gains the other loses, to round-off. Fields of which no contact was asked stick to each other, as if
-!> they were one. Pairs are treated in the order of the deck; where more than two fields meet, several times.
+!> The normal is that of gradients of volume (Nairn 2013, Huang et al. 2011), the same for both with opposite signs, so what one
+!> field gains the other loses, to round-off. Fields of which no contact was asked stick to each other, as if they were one. Pairs
+!> are treated in the order of their fields; where more than two fields meet, several times.
 module contact
   use blocks, only: block
   use contact_surfaces, only: reach_of
   use kinds, only: wp
   use mesh, only: mesh_type
-  use solid_state, only: solid_type, contact_pair, book_contact_impulse, book_contact_work, n_books, n_contact_books
+  use solid_state, only: solid_type, contact_pair, contact_nodes, contact_open, contact_slip, contact_stick, &
+    book_contact_impulse, book_contact_work, n_books, n_contact_books
   implicit none
   private
-  public :: meet_fields, rub
+  public :: meet_fields, keep_contact, rub
 
   !> Surfaces meet where they are nearer than this, in cells: what two particles per cell may hide of a surface on the nodes.
   real(wp), parameter :: closeness = 0.13_wp
+  !> A body whose surface lies farther than this beyond a node, in cells, fills what the node sees: it has no surface there.
+  real(wp), parameter :: filled = 0.85_wp
   integer, parameter :: sweeps = 4 !< over the pairs where more than two fields meet
 
 contains
 
   !> Changes the velocities of the fields at the shared nodes of local brick b: variables first+1.. of velocity(field).
-  !> change: gets the same changes; books: get this brick's part of impulses and work.
-  subroutine meet_fields(mesh, solid, b, first, velocity, change, books)
+  !> meeting: its normals and states are set; change: gets the same changes; books: get this brick's part of impulses and work.
+  pure subroutine meet_fields(mesh, solid, b, meeting, first, velocity, change, books)
     type(mesh_type), intent(in) :: mesh
     type(solid_type), intent(in) :: solid
     integer, intent(in) :: b, first
+    type(contact_nodes), intent(inout) :: meeting
     type(block), intent(inout) :: velocity(:)
     type(block), intent(inout), optional :: change(:)
     real(wp), intent(inout), optional :: books(:)
@@ -35,8 +39,8 @@ contains
     integer :: n, field, p, at
     spacing = mesh%spacing
     if (solid%order == 2) spacing = sqrt(1.5_wp)*mesh%spacing ! splines are wider than linear functions
-    do n = 1, size(solid%meeting(b)%share, 2)
-      associate (node => solid%meeting(b)%node(:, n), share => solid%meeting(b)%share(:, n))
+    do n = 1, size(meeting%share, 2)
+      associate (node => meeting%node(:, n), share => meeting%share(:, n))
         do field = 1, solid%n_fields
           mass(field) = solid%node(field, b)%a(node(1), 1, node(2), node(3))
           v(:, field) = velocity(field)%a(node(1), first + 1:first + 3, node(2), node(3))
@@ -44,7 +48,7 @@ contains
           volume(field) = solid%surface(field, b)%a(node(1), 7, node(2), node(3))
         end do
         old = v
-        call meet_at_node(solid%pair, spacing, mass, volume, surface, v, booked)
+        call meet_at_node(solid%pair, spacing, mass, volume, surface, v, meeting%normal(:, :, n), meeting%state(:, n), booked)
         do field = 1, solid%n_fields
           if (.not. mass(field) > 0) cycle
           velocity(field)%a(node(1), first + 1:first + 3, node(2), node(3)) = v(:, field)
@@ -54,7 +58,7 @@ contains
         if (.not. present(books)) cycle
         do p = 1, size(solid%pair)
           associate (pair => solid%pair(p)%field)
-            if (.not. all(mass(pair) > 0)) cycle
+            if (meeting%state(p, n) == contact_open) cycle
             at = n_books + n_contact_books*(p - 1)
             books(at + 1:at + n_contact_books) = books(at + 1:at + n_contact_books) &
               + sum(share(pair))/sum(volume(pair))*booked(:, p)
@@ -65,26 +69,29 @@ contains
   end subroutine meet_fields
 
   !> All fields at one node. surface: gradient of volume (1..3) and first moment of volume about the node (4..6).
-  pure subroutine meet_at_node(pairs, spacing, mass, volume, surface, v, booked)
+  pure subroutine meet_at_node(pairs, spacing, mass, volume, surface, v, normal, state, booked)
     type(contact_pair), intent(in) :: pairs(:)
     real(wp), intent(in) :: spacing(3), mass(:), volume(:), surface(:, :)
     real(wp), intent(inout) :: v(:, :)
+    real(wp), intent(out) :: normal(:, :) !< (3, pair)
+    integer, intent(out) :: state(:) !< by pair
     real(wp), intent(out) :: booked(:, :) !< (n_contact_books, pair)
-    real(wp) :: normal(3, size(pairs)), impulse(3), work
-    logical :: touching(size(pairs))
-    integer :: p, sweep
+    real(wp) :: impulse(3), work
+    logical :: near(size(pairs))
+    integer :: p, sweep, now
     booked = 0
+    normal = 0
+    state = contact_open
     do p = 1, size(pairs)
-      touching(p) = all(mass(pairs(p)%field) > 0)
-      if (touching(p)) call look_between(spacing, volume(pairs(p)%field), surface(:, pairs(p)%field), normal(:, p), touching(p))
+      near(p) = all(mass(pairs(p)%field) > 0)
+      if (near(p)) call look_between(spacing, volume(pairs(p)%field), surface(:, pairs(p)%field), normal(:, p), near(p))
     end do
     do sweep = 1, merge(sweeps, 1, count(mass > 0) > 2)
       do p = 1, size(pairs)
-        if (.not. touching(p)) cycle
-        associate (a => pairs(p)%field(1), b => pairs(p)%field(2))
-          call rub(pairs(p)%friction, mass([a, b]), normal(:, p), v(:, a), v(:, b), impulse, work)
-        end associate
-        associate (to => booked(:, p))
+        if (.not. near(p)) cycle
+        associate (a => pairs(p)%field(1), b => pairs(p)%field(2), to => booked(:, p))
+          call rub(pairs(p)%friction, mass([a, b]), normal(:, p), v(:, a), v(:, b), impulse, work, now)
+          if (now /= contact_open) state(p) = now
           to(book_contact_impulse:book_contact_impulse + 2) = to(book_contact_impulse:book_contact_impulse + 2) + impulse
           to(book_contact_work) = to(book_contact_work) + work
         end associate
@@ -92,6 +99,42 @@ contains
     end do
     if (size(mass) > 2) call stick(pairs, mass, v)
   end subroutine meet_at_node
+
+  !> Brings velocities that were mapped again to what the contact of this step allows: no difference along the normal, and none at
+  !> all where the fields stick. Whether they touch is not asked again: to take back what approaches only, and leave what parts,
+  !> would compress the bodies.
+  pure subroutine keep_contact(pairs, meeting, nodes, velocity)
+    type(contact_pair), intent(in) :: pairs(:)
+    type(contact_nodes), intent(in) :: meeting
+    type(block), intent(in) :: nodes(:) !< by field: mass
+    type(block), intent(inout) :: velocity(:) !< by field
+    real(wp) :: mass(size(nodes)), v(3, size(nodes)), jump(3), part
+    integer :: n, field, p, sweep
+    do n = 1, size(meeting%share, 2)
+      associate (node => meeting%node(:, n))
+        do field = 1, size(nodes)
+          mass(field) = nodes(field)%a(node(1), 1, node(2), node(3))
+          v(:, field) = velocity(field)%a(node(1), :, node(2), node(3))
+        end do
+        do sweep = 1, merge(sweeps, 1, count(mass > 0) > 2)
+          do p = 1, size(pairs)
+            if (meeting%state(p, n) == contact_open) cycle
+            associate (a => pairs(p)%field(1), b => pairs(p)%field(2), normal => meeting%normal(:, p, n))
+              jump = v(:, a) - v(:, b)
+              if (meeting%state(p, n) == contact_slip) jump = dot_product(jump, normal)*normal
+              part = mass(b)/(mass(a) + mass(b))
+              v(:, a) = v(:, a) - part*jump
+              v(:, b) = v(:, b) + (1 - part)*jump
+            end associate
+          end do
+        end do
+        if (size(nodes) > 2) call stick(pairs, mass, v)
+        do field = 1, size(nodes)
+          if (mass(field) > 0) velocity(field)%a(node(1), :, node(2), node(3)) = v(:, field)
+        end do
+      end associate
+    end do
+  end subroutine keep_contact
 
   !> The normal between two fields, from the first to the second, and whether their surfaces meet along it: of the normals of the
   !> two and that of both together the one along which their surfaces lie farthest apart. So the corner of a block that slides
@@ -115,7 +158,7 @@ contains
       size = norm2(spacing*candidate(:, c))
       reach(1) = reach_of(dot_product(surface(4:6, 1), candidate(:, c))/(volume(1)*size))
       reach(2) = reach_of(-dot_product(surface(4:6, 2), candidate(:, c))/(volume(2)*size))
-      rank = -sum(reach) - 2*count(reach > 0.85_wp)
+      rank = -sum(reach) - 2*count(reach > filled)
       if (rank > best + 1e-6_wp) then
         best = rank
         distance = -sum(reach)
@@ -126,20 +169,26 @@ contains
   end subroutine look_between
 
   !> Two velocities that approach along the normal (from a to b) lose that part of their difference, and of the part across as much
-  !> as friction may take. impulse: on a; work: of friction, that the motion loses.
-  pure subroutine rub(friction, mass, normal, a, b, impulse, work)
+  !> as friction may take. impulse: on a; work: of friction, that the motion loses; state: contact_open, _slip or _stick.
+  pure subroutine rub(friction, mass, normal, a, b, impulse, work, state)
     real(wp), intent(in) :: friction, mass(2), normal(3)
     real(wp), intent(inout) :: a(3), b(3)
     real(wp), intent(out) :: impulse(3), work
+    integer, intent(out) :: state
     real(wp) :: across(3), jump(3), approach, slip, kept, reduced
     impulse = 0
     work = 0
+    state = contact_open
     approach = dot_product(a - b, normal)
     if (.not. approach > 0) return
     across = (a - b) - approach*normal
     slip = norm2(across)
     kept = 0
-    if (slip > friction*approach) kept = 1 - friction*approach/slip
+    state = contact_stick
+    if (slip > friction*approach) then
+      kept = 1 - friction*approach/slip
+      state = contact_slip
+    end if
     jump = approach*normal + (1 - kept)*across
     reduced = mass(1)*(mass(2)/(mass(1) + mass(2)))
     a = a - (mass(2)/(mass(1) + mass(2)))*jump

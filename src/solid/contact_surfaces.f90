@@ -77,8 +77,9 @@ contains
       end do
       allocate (shared(0:last(1), 0:last(2), 0:last(3)))
       shared = fields > 1
-      if (allocated(meeting%node)) deallocate (meeting%node, meeting%share)
+      if (allocated(meeting%node)) deallocate (meeting%node, meeting%share, meeting%normal, meeting%state)
       allocate (meeting%node(3, count(shared)), meeting%share(solid%n_fields, count(shared)))
+      allocate (meeting%normal(3, size(solid%pair), count(shared)), meeting%state(size(solid%pair), count(shared)))
       n = 0
       do k = 0, last(3)
         do j = 0, last(2)

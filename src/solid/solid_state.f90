@@ -61,6 +61,8 @@ module solid_state
     integer :: index = 0 !< of the particle in its block
   end type limit_type
 
+  integer, parameter, public :: contact_open = 0, contact_slip = 1, contact_stick = 2
+
   !> Two velocity fields that touch with friction.
   type, public :: contact_pair
     integer :: field(2) = 0
@@ -72,6 +74,8 @@ module solid_state
   type, public :: contact_nodes
     integer, allocatable :: node(:, :) !< (3, n) indices in the brick, from 0
     real(wp), allocatable :: share(:, :) !< (field, n) this brick's part of the volume
+    real(wp), allocatable :: normal(:, :, :) !< (3, pair, n) from the first field to the second
+    integer, allocatable :: state(:, :) !< (pair, n) what the contact did in this step: contact_open, contact_slip, contact_stick
   end type contact_nodes
 
   type, public :: solid_type

@@ -6,7 +6,7 @@
 module solid_step
   use blocks, only: block, allocate_nodes
   use cell_functions, only: cell_frame, chunk
-  use contact, only: meet_fields
+  use contact, only: meet_fields, keep_contact
   use contact_surfaces, only: find_surfaces
   use halo, only: halo_type, add, last_node
   use kinds, only: wp
@@ -120,7 +120,7 @@ contains
     end do
     if (allocated(solid%pair)) then
       do b = 1, mesh%n_local
-        call meet_fields(mesh, solid, b, 1, solid%node(:, b), solid%force(:, b), solid%books(:, b))
+        call meet_fields(mesh, solid, b, solid%meeting(b), 1, solid%node(:, b), solid%force(:, b), solid%books(:, b))
       end do
     end if
     do b = 1, mesh%n_local
@@ -182,7 +182,7 @@ contains
     end do
     if (allocated(solid%pair) .and. solid%scheme == scheme_musl) then
       do b = 1, mesh%n_local
-        call meet_fields(mesh, solid, b, 0, solid%mapped(:, b))
+        call keep_contact(solid%pair, solid%meeting(b), solid%node(:, b), solid%mapped(:, b))
       end do
     end if
   end subroutine find_straining_velocity
@@ -205,7 +205,7 @@ contains
         solid%force(field, b)%a = 0
         call allocate_nodes(unused(field), last_node(mesh, solid%order), 4)
       end do
-      if (allocated(solid%pair)) call meet_fields(mesh, solid, b, 0, solid%mapped(:, b))
+      if (allocated(solid%pair)) call meet_fields(mesh, solid, b, solid%meeting(b), 0, solid%mapped(:, b))
       do set = 1, solid%n_sets
         if (solid%block(set, b)%n == 0) cycle
         field = solid%field_of_set(set)
