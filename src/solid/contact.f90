@@ -13,7 +13,7 @@ module contact
     book_contact_impulse, book_contact_work, n_books, n_contact_books
   implicit none
   private
-  public :: meet_fields, keep_contact, rub
+  public :: meet_fields, keep_contact, rub, friction_work
 
   !> Surfaces meet where they are nearer than this, in cells: what two particles per cell may hide of a surface on the nodes.
   real(wp), parameter :: closeness = 0.13_wp
@@ -34,7 +34,8 @@ contains
     type(block), intent(inout), optional :: change(:)
     real(wp), intent(inout), optional :: books(:)
     real(wp), dimension(solid%n_fields) :: mass, volume
-    real(wp) :: v(3, solid%n_fields), old(3, solid%n_fields), surface(6, solid%n_fields), spacing(3)
+    real(wp) :: v(3, solid%n_fields), old(3, solid%n_fields), start(3, solid%n_fields)
+    real(wp) :: surface(6, solid%n_fields), spacing(3)
     real(wp) :: booked(n_contact_books, size(solid%pair))
     integer :: n, field, p, at
     spacing = mesh%spacing
@@ -48,6 +49,12 @@ contains
           volume(field) = solid%surface(field, b)%a(node(1), 7, node(2), node(3))
         end do
         old = v
+        start = v
+        if (present(change)) then
+          do field = 1, solid%n_fields
+            start(:, field) = v(:, field) - change(field)%a(node(1), :, node(2), node(3))
+          end do
+        end if
         call meet_at_node(solid%pair, spacing, mass, volume, surface, v, meeting%normal(:, :, n), meeting%state(:, n), booked)
         do field = 1, solid%n_fields
           if (.not. mass(field) > 0) cycle
@@ -59,6 +66,8 @@ contains
         do p = 1, size(solid%pair)
           associate (pair => solid%pair(p)%field)
             if (meeting%state(p, n) == contact_open) cycle
+            if (present(change)) booked(book_contact_work, p) = friction_work(booked(:3, p), meeting%normal(:, p, n), &
+              start(:, pair(1)) - start(:, pair(2)), v(:, pair(1)) - v(:, pair(2)))
             at = n_books + n_contact_books*(p - 1)
             books(at + 1:at + n_contact_books) = books(at + 1:at + n_contact_books) &
               + sum(share(pair))/sum(volume(pair))*booked(:, p)
@@ -76,7 +85,7 @@ contains
     real(wp), intent(out) :: normal(:, :) !< (3, pair)
     integer, intent(out) :: state(:) !< by pair
     real(wp), intent(out) :: booked(:, :) !< (n_contact_books, pair)
-    real(wp) :: impulse(3), work
+    real(wp) :: impulse(3)
     logical :: near(size(pairs))
     integer :: p, sweep, now
     booked = 0
@@ -90,10 +99,9 @@ contains
       do p = 1, size(pairs)
         if (.not. near(p)) cycle
         associate (a => pairs(p)%field(1), b => pairs(p)%field(2), to => booked(:, p))
-          call rub(pairs(p)%friction, mass([a, b]), normal(:, p), v(:, a), v(:, b), impulse, work, now)
+          call rub(pairs(p)%friction, mass([a, b]), normal(:, p), v(:, a), v(:, b), impulse, now)
           if (now /= contact_open) state(p) = now
           to(book_contact_impulse:book_contact_impulse + 2) = to(book_contact_impulse:book_contact_impulse + 2) + impulse
-          to(book_contact_work) = to(book_contact_work) + work
         end associate
       end do
     end do
@@ -169,15 +177,14 @@ contains
   end subroutine look_between
 
   !> Two velocities that approach along the normal (from a to b) lose that part of their difference, and of the part across as much
-  !> as friction may take. impulse: on a; work: of friction, that the motion loses; state: contact_open, _slip or _stick.
-  pure subroutine rub(friction, mass, normal, a, b, impulse, work, state)
+  !> as friction may take. impulse: on a; state: contact_open, _slip or _stick.
+  pure subroutine rub(friction, mass, normal, a, b, impulse, state)
     real(wp), intent(in) :: friction, mass(2), normal(3)
     real(wp), intent(inout) :: a(3), b(3)
-    real(wp), intent(out) :: impulse(3), work
+    real(wp), intent(out) :: impulse(3)
     integer, intent(out) :: state
-    real(wp) :: across(3), jump(3), approach, slip, kept, reduced
+    real(wp) :: across(3), jump(3), approach, slip, kept
     impulse = 0
-    work = 0
     state = contact_open
     approach = dot_product(a - b, normal)
     if (.not. approach > 0) return
@@ -190,12 +197,17 @@ contains
       state = contact_slip
     end if
     jump = approach*normal + (1 - kept)*across
-    reduced = mass(1)*(mass(2)/(mass(1) + mass(2)))
     a = a - (mass(2)/(mass(1) + mass(2)))*jump
     b = b + (mass(1)/(mass(1) + mass(2)))*jump
-    impulse = -reduced*jump
-    work = 0.5_wp*reduced*slip**2*(1 - kept**2)
+    impulse = -mass(1)*(mass(2)/(mass(1) + mass(2)))*jump
   end subroutine rub
+
+  !> What the motion of two fields loses to the part across the normal of an impulse, in a step that changes the difference of
+  !> their velocities from start to finish: with the mean of the two, as the particles' velocities change by differences.
+  pure real(wp) function friction_work(impulse, normal, start, finish) result(work)
+    real(wp), intent(in) :: impulse(3), normal(3), start(3), finish(3)
+    work = -0.5_wp*dot_product(impulse - dot_product(impulse, normal)*normal, start + finish)
+  end function friction_work
 
   !> Fields that do not touch by any pair take their common velocity, and so do all that stick to one of them.
   pure subroutine stick(pairs, mass, v)
