@@ -8,7 +8,7 @@ module deck_body
   private
   public :: body_keys, hole_keys
 
-  character(word_length), parameter :: shapes(3) = [character(word_length) :: 'box', 'sphere', 'cylinder']
+  character(word_length), parameter :: shapes(4) = [character(word_length) :: 'box', 'sphere', 'cylinder', 'ogive']
 
   !> Bodies of the same name are one body: their union.
   type, public :: body_group
@@ -17,8 +17,9 @@ module deck_body
     character(word_length) :: shape = ''
     real(wp) :: lower(3) = unset, upper(3) = unset !< box
     real(wp) :: center(3) = unset !< sphere
-    real(wp) :: radius = unset !< sphere, cylinder
-    real(wp) :: start(3) = unset, end(3) = unset !< axis of the cylinder
+    real(wp) :: radius = unset !< sphere, cylinder, ogive
+    real(wp) :: start(3) = unset, end(3) = unset !< axis of the cylinder; base and tip of the ogive
+    real(wp) :: caliber_radius_head = 3 !< of the ogive
     real(wp) :: spacing = unset !< of the particles
     real(wp) :: velocity(3) = 0 !< at the origin of the coordinates
     real(wp) :: velocity_gradient(3) = 0 !< the velocity in x, y, z grows by this per length in x, y, z
@@ -31,8 +32,9 @@ module deck_body
     character(word_length) :: shape = ''
     real(wp) :: lower(3) = unset, upper(3) = unset !< box
     real(wp) :: center(3) = unset !< sphere
-    real(wp) :: radius = unset !< sphere, cylinder
-    real(wp) :: start(3) = unset, end(3) = unset !< axis of the cylinder
+    real(wp) :: radius = unset !< sphere, cylinder, ogive
+    real(wp) :: start(3) = unset, end(3) = unset !< axis of the cylinder; base and tip of the ogive
+    real(wp) :: caliber_radius_head = 3 !< of the ogive
     integer :: line = 0
   end type hole_group
 
@@ -51,6 +53,7 @@ contains
     call table%add('radius', group%radius, of_length, more_than=0.0_wp)
     call table%add('start', group%start, of_length)
     call table%add('end', group%end, of_length)
+    call table%add('caliber_radius_head', group%caliber_radius_head, at_least=0.5_wp)
     call table%add('spacing', group%spacing, of_length, more_than=0.0_wp, required=.true.)
     call table%add('velocity', group%velocity, of_velocity, usual=[-1e5_wp, 1e5_wp])
     call table%add('velocity_gradient', group%velocity_gradient, of_rate)
@@ -69,6 +72,7 @@ contains
     call table%add('radius', group%radius, of_length, more_than=0.0_wp)
     call table%add('start', group%start, of_length)
     call table%add('end', group%end, of_length)
+    call table%add('caliber_radius_head', group%caliber_radius_head, at_least=0.5_wp)
   end subroutine hole_keys
 
 end module deck_body

@@ -66,7 +66,8 @@ contains
         call check_point(shape%normal, [0.0_wp, 0.0_wp, 0.0_wp], 'normal', mesh, table, problems, complete)
       end select
     end do
-    if (shape%kind == 'cylinder') call check_axis(shape%start, shape%end, mesh, table, problems, complete)
+    if (any(shape%kind == [character(8) :: 'cylinder', 'ogive'])) call check_axis(shape%start, shape%end, mesh, table, problems, &
+      complete)
     if (.not. complete) return
     if (shape%kind == 'box') then
       do i = 1, 3
@@ -88,7 +89,7 @@ contains
       keys = [character(8) :: 'lower', 'upper']
     case ('sphere')
       keys = [character(8) :: 'center', 'radius']
-    case ('cylinder')
+    case ('cylinder', 'ogive')
       keys = [character(8) :: 'start', 'end', 'radius']
     case ('half_space')
       keys = [character(8) :: 'point', 'normal']
@@ -179,7 +180,7 @@ contains
     case ('sphere')
       low = shape%center - shape%radius
       high = shape%center + shape%radius
-    case ('cylinder')
+    case ('cylinder', 'ogive')
       low = min(shape%start, shape%end) - shape%radius
       high = max(shape%start, shape%end) + shape%radius
     case default
@@ -202,7 +203,7 @@ contains
       inside = all(point >= shape%lower .and. point <= shape%upper)
     case ('sphere')
       inside = norm2(point - shape%center) <= shape%radius
-    case ('cylinder')
+    case ('cylinder', 'ogive')
       axis = shape%end - shape%start
       along = dot_product(point - shape%start, axis)/dot_product(axis, axis)
       inside = along >= 0.0_wp .and. along <= 1.0_wp .and. norm2(point - shape%start - along*axis) <= shape%radius

@@ -9,7 +9,7 @@ module deck_solid
 
   type, public :: solid_group
     character(word_length) :: scheme = 'musl' !< when the stress is updated
-    character(word_length) :: shape = 'linear' !< functions of the nodes
+    character(word_length) :: shape = 'quadratic' !< functions of the nodes
     character(word_length) :: transfer = 'flip' !< of velocities to and from the nodes
     real(wp) :: cfl = 0.5_wp
     real(wp) :: gravity(3) = 0

@@ -17,13 +17,18 @@ contains
     real(wp), intent(out) :: yield(n)
     real(wp), parameter :: smallest = 1e-30_wp
     integer :: i
-    real(wp) :: hardening, inverse
+    real(wp) :: inverse, base(n), factor(n), rate(n)
     inverse = 1/dt_rate
-    !$omp simd private(hardening)
+    ! limits in a loop of their own: beside them the compiler branches around exp and log, which then are not vectorised
+    !$omp simd
     do i = 1, n
-      hardening = exp(exponent*log(max(plastic_strain(i), smallest)))
-      hardening = merge(b*hardening, 0.0_wp, plastic_strain(i) > smallest)
-      yield(i) = (a + hardening)*(1 + c*log(max(strain(i)*inverse, 1.0_wp)))
+      base(i) = max(plastic_strain(i), smallest)
+      factor(i) = merge(b, 0.0_wp, plastic_strain(i) > smallest)
+      rate(i) = max(strain(i)*inverse, 1.0_wp)
+    end do
+    !$omp simd
+    do i = 1, n
+      yield(i) = (a + factor(i)*exp(exponent*log(base(i))))*(1 + c*log(rate(i)))
     end do
   end subroutine simplified_johnson_cook_yield
 

@@ -10,7 +10,7 @@ module solid_setup
   use particle_generation, only: piece_type, body_lattice, bar_lattice, generate_particles
   use particles, only: allocate_particles
   use solid_material, only: make_solid_material, claim_columns, model_fluid
-  use solid_shapes, only: shape_type, box_shape, sphere_shape, cylinder_shape
+  use solid_shapes, only: shape_type, box_shape, sphere_shape, cylinder_shape, ogive_shape
   use solid_state, only: solid_type, n_books, face_free, face_symmetry, face_clamped, clamp_box, n_cells_of, scheme_musl, &
     scheme_usl, scheme_usf, n_contact_books, contact_pair
   use supports, only: find_supports
@@ -218,7 +218,7 @@ contains
         do i = 1, size(deck%body)
           if (find_body(deck, deck%body(i)%name) /= find_body(deck, clamp%body)) cycle
           shape = deck_shape(mesh, deck%body(i)%shape, deck%body(i)%lower, deck%body(i)%upper, deck%body(i)%center, &
-            deck%body(i)%radius, deck%body(i)%start, deck%body(i)%end)
+            deck%body(i)%radius, deck%body(i)%start, deck%body(i)%end, deck%body(i)%caliber_radius_head)
           solid%clamp = [solid%clamp, clamp_box(max(clamp%lower, shape%lower - mesh%spacing), &
             min(clamp%upper, shape%upper + mesh%spacing), part%fixed)]
         end do
@@ -226,10 +226,10 @@ contains
     end do
   end subroutine set_supports
 
-  function deck_shape(mesh, kind, lower, upper, center, radius, start, end) result(shape)
+  function deck_shape(mesh, kind, lower, upper, center, radius, start, end, head) result(shape)
     type(mesh_type), intent(in) :: mesh
     character(*), intent(in) :: kind
-    real(wp), intent(in) :: lower(3), upper(3), center(3), radius, start(3), end(3)
+    real(wp), intent(in) :: lower(3), upper(3), center(3), radius, start(3), end(3), head
     type(shape_type) :: shape
     select case (kind)
     case ('box')
@@ -238,6 +238,8 @@ contains
       shape = sphere_shape(center, radius, mesh%active)
     case ('cylinder')
       shape = cylinder_shape(start, end, radius, mesh%active)
+    case ('ogive')
+      shape = ogive_shape(start, end, radius, head, mesh%active)
     case default
       call fatal("solid: no shape '"//trim(kind)//"'", exit_bad_input)
     end select
@@ -259,7 +261,8 @@ contains
     allocate (shape(size(deck%body)), pieces(size(deck%body) + size(bar)))
     do i = 1, size(deck%body)
       associate (body => deck%body(i), piece => pieces(i))
-        shape(i) = deck_shape(mesh, body%shape, body%lower, body%upper, body%center, body%radius, body%start, body%end)
+        shape(i) = deck_shape(mesh, body%shape, body%lower, body%upper, body%center, body%radius, body%start, body%end, &
+          body%caliber_radius_head)
         allocate (cut(0))
         do j = 1, i - 1
           if (find_body(deck, deck%body(j)%name) == find_body(deck, body%name)) cut = [cut, shape(j)]
@@ -267,7 +270,7 @@ contains
         do j = 1, size(deck%hole)
           if (find_body(deck, deck%hole(j)%body) /= find_body(deck, body%name)) cycle
           cut = [cut, deck_shape(mesh, deck%hole(j)%shape, deck%hole(j)%lower, deck%hole(j)%upper, deck%hole(j)%center, &
-            deck%hole(j)%radius, deck%hole(j)%start, deck%hole(j)%end)]
+            deck%hole(j)%radius, deck%hole(j)%start, deck%hole(j)%end, deck%hole(j)%caliber_radius_head)]
         end do
         do j = 1, size(bar)
           if (owner(j) == find_body(deck, body%name)) cut = [cut, bar(j)]

@@ -4,12 +4,12 @@ module solid_shapes
   use kinds, only: wp
   implicit none
   private
-  public :: box_shape, sphere_shape, cylinder_shape, remaining_volume
+  public :: box_shape, sphere_shape, cylinder_shape, ogive_shape, remaining_volume
 
-  integer, parameter :: is_box = 1, is_sphere = 2, is_cylinder = 3
+  integer, parameter :: is_box = 1, is_sphere = 2, is_cylinder = 3, is_ogive = 4
 
-  !> A box, a sphere, or a cylinder with flat ends. Directions that are not active play no part: in two dimensions a sphere is a
-  !> disc.
+  !> A box, a sphere, a cylinder with flat ends, or one with an ogive on its end. Directions that are not active play no part: in
+  !> two dimensions a sphere is a disc.
   type, public :: shape_type
     integer :: kind = is_box
     logical :: active(3) = .true.
@@ -17,6 +17,7 @@ module solid_shapes
     real(wp) :: center(3) = 0 !< of the sphere, or start of the cylinder's axis
     real(wp) :: axis(3) = 0 !< unit vector of the cylinder's axis
     real(wp) :: length = 0, radius = 0
+    real(wp) :: nose = 0, arc = 0 !< length of the ogive, and radius of the arc that is its outline
     logical :: endless = .false. !< the cylinder's axis lies along an inactive direction
   contains
     procedure :: holds
@@ -70,20 +71,43 @@ contains
     end if
   end function cylinder_shape
 
+  !> A cylinder from start whose end is a tangent ogive with its tip at end: the outline is an arc of a circle that joins the
+  !> cylinder smoothly. head: radius of the arc over the diameter (caliber radius head), 1/2 (a half sphere) or more.
+  pure function ogive_shape(start, end, radius, head, active) result(s)
+    real(wp), intent(in) :: start(3), end(3), radius, head
+    logical, intent(in) :: active(3)
+    type(shape_type) :: s
+    s = cylinder_shape(start, end, radius, active)
+    s%kind = is_ogive
+    s%arc = 2*radius*head
+    s%nose = min(sqrt(s%arc**2 - (s%arc - radius)**2), s%length)
+  end function ogive_shape
+
+  !> Radius of an ogive at a place along its axis, which lies between its ends.
+  pure real(wp) function ogive_radius(self, along)
+    class(shape_type), intent(in) :: self
+    real(wp), intent(in) :: along
+    real(wp) :: into
+    into = max(along - (self%length - self%nose), 0.0_wp)
+    ogive_radius = max(sqrt(max(self%arc**2 - into**2, 0.0_wp)) - (self%arc - self%radius), 0.0_wp)
+  end function ogive_radius
+
   !> Is the point in the shape?
   pure logical function holds(self, point)
     class(shape_type), intent(in) :: self
     real(wp), intent(in) :: point(3)
-    real(wp) :: d(3), along
+    real(wp) :: d(3), along, radius
     holds = .not. any(self%active .and. (point < self%lower .or. point > self%upper))
     if (.not. holds .or. self%kind == is_box) return
     d = merge(point - self%center, 0.0_wp, self%active)
     along = 0
-    if (self%kind == is_cylinder .and. .not. self%endless) then
+    radius = self%radius
+    if (self%kind /= is_sphere .and. .not. self%endless) then
       along = dot_product(d, self%axis)
       holds = along >= 0 .and. along <= self%length
+      if (self%kind == is_ogive) radius = ogive_radius(self, along)
     end if
-    holds = holds .and. dot_product(d, d) - along**2 <= self%radius**2
+    holds = holds .and. dot_product(d, d) - along**2 <= radius**2
   end function holds
 
   !> The part low..high of the line through point along coordinate direction that lies in the shape; empty where high <= low.
@@ -111,7 +135,7 @@ contains
     d(direction) = 0
     u = 0
     if (self%active(direction)) u(direction) = 1
-    if (self%kind == is_cylinder .and. .not. self%endless) then
+    if (self%kind /= is_sphere .and. .not. self%endless) then
       a = dot_product(d, self%axis)
       b = dot_product(u, self%axis)
       if (abs(b) > 1e-12_wp) then
@@ -139,7 +163,66 @@ contains
     else if (c > 0) then
       high = low
     end if
+    if (self%kind == is_ogive .and. high > low) call cut_ogive(self, point, direction, low, high)
   end subroutine interval
+
+  !> Shortens an interval of the cylinder around an ogive to that of the ogive. The shape is convex: the distance from the axis less
+  !> the radius has one minimum along the line, which golden sections find, and a zero on either side, found by bisection.
+  pure subroutine cut_ogive(self, point, direction, low, high)
+    class(shape_type), intent(in) :: self
+    real(wp), intent(in) :: point(3)
+    integer, intent(in) :: direction
+    real(wp), intent(inout) :: low, high
+    real(wp), parameter :: golden = 0.5_wp*(sqrt(5.0_wp) - 1)
+    real(wp) :: a, b, p, q, inside, outside(2)
+    integer :: i, side
+    a = low
+    b = high
+    do i = 1, 40
+      p = b - golden*(b - a)
+      q = a + golden*(b - a)
+      if (excess(p) < excess(q)) then
+        b = q
+      else
+        a = p
+      end if
+    end do
+    inside = 0.5_wp*(a + b)
+    if (excess(inside) > 0) then
+      high = low
+      return
+    end if
+    outside = [low, high]
+    do side = 1, 2
+      if (excess(outside(side)) <= 0) cycle
+      a = inside
+      b = outside(side)
+      do i = 1, 40
+        p = 0.5_wp*(a + b)
+        if (excess(p) > 0) then
+          b = p
+        else
+          a = p
+        end if
+      end do
+      outside(side) = a
+    end do
+    low = outside(1)
+    high = outside(2)
+
+  contains
+
+    pure real(wp) function excess(s)
+      real(wp), intent(in) :: s
+      real(wp) :: d(3), along
+      d = point
+      d(direction) = s
+      d = merge(d - self%center, 0.0_wp, self%active)
+      along = dot_product(d, self%axis)
+      excess = sqrt(max(dot_product(d, d) - along**2, 0.0_wp)) - ogive_radius(self, along)
+    end function excess
+
+  end subroutine cut_ogive
 
   !> Volume of a shape inside the box lower..upper and outside all of cut.
   !>

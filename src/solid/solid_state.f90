@@ -107,7 +107,7 @@ module solid_state
     integer :: order = 1 !< of the functions: 1 linear, 2 quadratic; also the layers of nodes that neighbours share
     integer :: scheme = scheme_musl
     real(wp) :: flip = 1 !< part of FLIP, the rest is PIC; 0 with APIC
-    integer, allocatable :: at_affine(:) !< by set: first of the 9 columns of the affine matrix dv_i/dx_j, row by row; 0 without APIC
+    integer, allocatable :: at_affine(:) !< by set: first of 9 columns of the affine matrix dv_i/dx_j, row by row; 0 without APIC
     integer :: step = 0 !< of the scene, for messages
     real(wp) :: time = 0 !< likewise
     character(:), allocatable :: limiter !< what limits the time step, likewise

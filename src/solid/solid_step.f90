@@ -11,10 +11,12 @@ module solid_step
   use halo, only: halo_type, add, last_node
   use kinds, only: wp
   use mesh, only: mesh_type
+  use middle_gradient, only: center_gradient
   use migration, only: route_particle, exchange_particles, outbox_type
   use particle_checks, only: check_particles
   use particles, only: particle_block, cell_of_particle
   use solid_load, only: loaded_cells, apply_load, book_load
+  use solid_material, only: model_fluid
   use solid_state, only: solid_type, limit_type, frame_of, match_nodes, book_impulse, book_gravity_impulse, n_supports, &
     scheme_musl, scheme_usf
   use solid_time_step, only: find_limit
@@ -234,8 +236,12 @@ contains
         last = min(first + chunk - 1, blk%n)
         call move_particles(frame, solid%at_affine(set), dt, strain_dt, blk, first, last, cell, solid%node(field, b)%a, &
           solid%mapped(field, b)%a, gradient, n_moved, moved)
-        if (strain_dt > 0) call update_stress(solid%material(set), strain_dt, length, last - first + 1, blk%capacity, &
-          size(blk%f, 2), blk%f, first, gradient)
+        if (strain_dt > 0) then
+          ! fluids, which keep no shape, are nearer to exact solutions without
+          if (solid%material(set)%model /= model_fluid) call center_gradient(last - first + 1, solid%scheme /= scheme_usf, gradient)
+          call update_stress(solid%material(set), strain_dt, length, last - first + 1, blk%capacity, size(blk%f, 2), blk%f, first, &
+            gradient)
+        end if
       end associate
       if (.not. dt > 0) cycle
       do i = 1, n_moved

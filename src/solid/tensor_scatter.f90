@@ -62,7 +62,8 @@ contains
     end do
   end subroutine scatter_by_tensor
 
-  !> Adds masses and momenta of n <= piece particles of a cell to the sums of its row. f: their first row; w: their functions along x.
+  !> Adds masses and momenta of n <= piece particles of a cell to the sums of its row. f: their first row; w: their functions
+  !> along x.
   pure subroutine add_momentum_by_tensor(x, y, z, lanes, n, w, affine, capacity, f, row)
     type(line_functions), intent(in) :: x, y, z
     type(lane_functions), intent(in) :: lanes
@@ -148,7 +149,7 @@ contains
     end do
   end subroutine sum_momentum
 
-  !> With the velocity v + C (X - x). at_x, at_y, at_z: control points X in cell coordinates, t: those of the particles; h: cell sizes.
+  !> With the velocity v + C (X - x). at_x, at_y, at_z: control points X in cell coordinates; t: particles likewise; h: cell sizes.
   pure subroutine sum_affine(n, n_x, y, z, at_y, at_z, at_x, h, t, wx, bump, mass, v1, v2, v3, capacity, c, total)
     integer, intent(in) :: n, n_x, capacity
     real(wp), intent(in) :: y(most_lanes, 0:2), z(most_lanes, 0:2), at_y(most_lanes), at_z(most_lanes), at_x(3), h(3)

@@ -1,5 +1,6 @@
 !> Runs the test problems of the flow and prints a line of comma-separated values for each: accuracy over resolutions and schemes,
-!> stability at the Courant numbers that are promised, speed by scene and brick, speed of particles. tools/bench calls it and makes tables and pictures.
+!> stability at the Courant numbers that are promised, speed by scene and brick; and the speed of particles. tools/bench calls it
+!> and makes tables and pictures.
 program flow_bench
   use bench_options, only: options_type, read_options, wanted
   use calibration, only: calibration_type, calibrate
