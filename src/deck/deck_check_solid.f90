@@ -1,4 +1,4 @@
-!> Checks of bodies, holes, reinforcement and clamps.
+!> Checks of bodies, holes, reinforcement, clamps and contacts.
 module deck_check_solid
   use kinds, only: wp
   use constants, only: unset
@@ -8,9 +8,9 @@ module deck_check_solid
   use deck_keys, only: key_table
   use deck_problems, only: problem_list, nearest_or_allowed
   use deck_tables, only: find_table
-  use deck_types, only: deck_type, body_group, clamp_group, find_body, find_material, heterogeneity_group, &
-    hole_group, reinforcement_group
-  use text, only: str
+  use deck_types, only: deck_type, body_group, clamp_group, contact_group, find_body, find_material, &
+    heterogeneity_group, hole_group, reinforcement_group
+  use text, only: lowercase, str
   implicit none
   private
   public :: check_solid
@@ -41,6 +41,9 @@ contains
     end do
     do i = 1, size(deck%clamp)
       call check_clamp(deck, deck%clamp(i), tables(find_table(tables, 'clamp', i)), problems)
+    end do
+    do i = 1, size(deck%contact)
+      call check_contact(deck, deck%contact(i), tables(find_table(tables, 'contact', i)), problems)
     end do
   end subroutine check_solid
 
@@ -226,6 +229,18 @@ contains
     if (clamp%body /= '') call refer_to_body(deck, clamp%body, table, problems)
   end subroutine check_clamp
 
+  !> Both must be bodies, and not the same one: a body does not touch itself.
+  subroutine check_contact(deck, contact, table, problems)
+    type(deck_type), intent(in) :: deck
+    type(contact_group), intent(inout) :: contact
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems
+    if (lowercase(trim(contact%body_1)) /= 'all') call refer_to_body(deck, contact%body_1, table, problems, 'body_1')
+    if (lowercase(trim(contact%body_2)) /= 'all') call refer_to_body(deck, contact%body_2, table, problems, 'body_2')
+    if (lowercase(trim(contact%body_1)) == lowercase(trim(contact%body_2)) .and. lowercase(trim(contact%body_1)) /= 'all') &
+      call problems%add_at_key(table, 'body_2', 'body '''//trim(contact%body_2)//''' can''t be in contact with itself')
+  end subroutine check_contact
+
   subroutine refer_to_solid(deck, name, table, problems)
     type(deck_type), intent(in) :: deck
     character(*), intent(inout) :: name
@@ -238,18 +253,23 @@ contains
       'material '''//trim(name)//''' has no model: it cannot be a solid (model = ''fluid'' makes particles of its eos)')
   end subroutine refer_to_solid
 
-  subroutine refer_to_body(deck, name, table, problems)
+  !> key: that names the body, `body` if absent.
+  subroutine refer_to_body(deck, name, table, problems, key)
     type(deck_type), intent(in) :: deck
     character(*), intent(inout) :: name
     type(key_table), intent(in) :: table
     type(problem_list), intent(inout) :: problems
+    character(*), intent(in), optional :: key
+    character(:), allocatable :: its_key
     integer :: i
-    if (name == '' .and. .not. table%is_given('body')) return
+    its_key = 'body'
+    if (present(key)) its_key = key
+    if (name == '' .and. .not. table%is_given(its_key)) return
     i = find_body(deck, name)
     if (i > 0) then
       name = deck%body(i)%name
     else
-      call problems%add_at_key(table, 'body', 'no &body has the name '''//trim(name)//''''// &
+      call problems%add_at_key(table, its_key, 'no &body has the name '''//trim(name)//''''// &
         nearest_or_allowed(name, deck%body%name, 'bodies'))
     end if
   end subroutine refer_to_body

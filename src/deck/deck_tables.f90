@@ -16,6 +16,7 @@ module deck_tables
   use deck_reinforcement, only: reinforcement_keys
   use deck_heterogeneity, only: heterogeneity_keys
   use deck_clamp, only: clamp_keys
+  use deck_contact, only: contact_keys
   use deck_coupling, only: coupling_keys
   use deck_gauge, only: gauge_keys
   use deck_output, only: output_keys
@@ -23,9 +24,9 @@ module deck_tables
   private
   public :: allocate_groups, group_count, group_number, make_table, make_tables, find_table, may_repeat
 
-  character(16), parameter, public :: group_names(18) = [character(16) :: 'run', 'mesh', 'boundary', 'flow', 'material', &
-    'region', 'charge', 'detonator', 'solid', 'body', 'hole', 'reinforcement', 'heterogeneity', 'clamp', 'coupling', &
-    'gauge', 'output', 'material_test'] !< in deck order
+  character(16), parameter, public :: group_names(19) = [character(16) :: 'run', 'mesh', 'boundary', 'flow', 'material', &
+    'region', 'charge', 'detonator', 'solid', 'body', 'hole', 'reinforcement', 'heterogeneity', 'clamp', 'contact', &
+    'coupling', 'gauge', 'output', 'material_test'] !< in deck order
 
 contains
 
@@ -42,8 +43,8 @@ contains
   pure logical function may_repeat(group)
     character(*), intent(in) :: group
     select case (group)
-    case ('material', 'region', 'charge', 'detonator', 'body', 'hole', 'reinforcement', 'heterogeneity', 'clamp', 'gauge', &
-      'material_test')
+    case ('material', 'region', 'charge', 'detonator', 'body', 'hole', 'reinforcement', 'heterogeneity', 'clamp', 'contact', &
+      'gauge', 'material_test')
       may_repeat = .true.
     case default
       may_repeat = .false.
@@ -56,7 +57,7 @@ contains
     integer, intent(in) :: count(size(group_names))
     allocate (deck%material(count(5)), deck%region(count(6)), deck%charge(count(7)), deck%detonator(count(8)))
     allocate (deck%body(count(10)), deck%hole(count(11)), deck%reinforcement(count(12)), deck%heterogeneity(count(13)))
-    allocate (deck%clamp(count(14)), deck%gauge(count(16)), deck%material_test(count(18)))
+    allocate (deck%clamp(count(14)), deck%contact(count(15)), deck%gauge(count(17)), deck%material_test(count(19)))
   end subroutine allocate_groups
 
   !> How many groups of this name the deck type holds (1 for one that may not be repeated, whether the file has it or not).
@@ -83,6 +84,8 @@ contains
       n = size(deck%heterogeneity)
     case ('clamp')
       n = size(deck%clamp)
+    case ('contact')
+      n = size(deck%contact)
     case ('gauge')
       n = size(deck%gauge)
     case ('material_test')
@@ -125,6 +128,8 @@ contains
       call heterogeneity_keys(deck%heterogeneity(i), table)
     case ('clamp')
       call clamp_keys(deck%clamp(i), table)
+    case ('contact')
+      call contact_keys(deck%contact(i), table)
     case ('coupling')
       call coupling_keys(deck%coupling, table)
     case ('gauge')

@@ -6,7 +6,7 @@ module balance
   use kinds, only: wp
   use scene, only: scene_type
   use solid_state, only: book_impulse, book_coupling_impulse, book_coupling_work, book_lost_mass, book_lost_momentum, &
-    book_lost_kinetic, book_lost_internal, book_gravity_impulse, n_supports
+    book_lost_kinetic, book_lost_internal, book_gravity_impulse, n_supports, n_books, n_contact_books, book_contact_work
   use solid_totals, only: solid_totals_type, sum_solid
   implicit none
   private
@@ -18,7 +18,8 @@ module balance
     type(solid_totals_type) :: solid
     real(wp) :: mass = 0 !< flow, solid and what left
     real(wp) :: momentum(3) = 0 !< flow and solid less all impulses from outside
-    !> Flow, unburnt explosive, solid and what left, what forcing took and did not give to the solid included; less afterburn.
+    !> Flow, unburnt explosive, solid, what left, what friction took, and what forcing took and did not give to the solid; less
+    !> afterburn.
     real(wp) :: energy = 0
     real(wp) :: momentum_scale = 0 !< sum of the sizes of all momenta and impulses
     real(wp) :: exchanged(3) = 0 !< momentum that the solid has from the flow
@@ -66,7 +67,8 @@ contains
                            + solid%books(book_lost_momentum:book_lost_momentum + 2) &
                            - solid%books(book_gravity_impulse:book_gravity_impulse + 2)
         balance%energy = balance%energy + sum(solid%kinetic + solid%internal + solid%potential) &
-                         + solid%books(book_lost_kinetic) + solid%books(book_lost_internal)
+                         + solid%books(book_lost_kinetic) + solid%books(book_lost_internal) &
+                         + sum(solid%books(n_books + book_contact_work::n_contact_books))
         balance%momentum_scale = balance%momentum_scale + sum(abs(solid%momentum)) &
                                  + sum(abs(solid%books(book_impulse:book_impulse + 3*n_supports - 1)))
       end associate

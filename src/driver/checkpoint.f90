@@ -1,5 +1,6 @@
 !> The whole state of a run to a restart file and back, bit for bit, on any number of ranks.
 module checkpoint
+  use errors, only: fatal
   use gauges, only: gauges_type, save_gauges, resume_gauges
   use immersed_boundary, only: restore_coupling
   use kinds, only: wp, i8
@@ -88,6 +89,8 @@ contains
       if (scene%has_solid) then
         call restart_get_particles(file, mesh, scene%solid%block)
         call restart_get_table(file, 'solid_books', counts, values)
+        if (size(values) /= size(scene%solid%books)) call fatal('restart file "'//file%name// &
+                                                                '" is of a run with other contacts than the deck has')
         scene%solid%books = reshape(values, shape(scene%solid%books))
         if (scene%solid%rigid_field > 0) then
           values = pack_rigid(scene%solid%rigid)

@@ -4,7 +4,8 @@ module history
   use csv_series, only: series, open_series, put_row
   use kinds, only: wp
   use scene, only: scene_type
-  use solid_state, only: book_lost_mass, book_lost_count
+  use solid_state, only: book_lost_mass, book_lost_count, book_contact_impulse, book_contact_work, n_books, n_contact_books, &
+    material_names, sum_by_material
   use text, only: append
   use units, only: unit_labels_type
   implicit none
@@ -23,6 +24,7 @@ contains
     type(unit_labels_type), intent(in) :: labels
     real(wp), intent(in), optional :: resume_time
     character(column_length), allocatable :: column(:)
+    character(64), allocatable :: material(:)
     integer :: k
     allocate (column(0))
     call add('time', labels%time)
@@ -43,17 +45,24 @@ contains
       if (any(scene%flow%afterburn%energy > 0)) call add('flow.energy_of_afterburn', labels%energy)
     end if
     if (scene%has_solid) then
-      do k = 1, scene%solid%n_sets
-        call add('solid.mass.'//trim(scene%solid%material(k)%name), labels%mass)
-        call add('solid.internal_energy.'//trim(scene%solid%material(k)%name), labels%energy)
-        call add('solid.kinetic_energy.'//trim(scene%solid%material(k)%name), labels%energy)
-        call add('solid.plastic_work.'//trim(scene%solid%material(k)%name), labels%energy)
-        call add('solid.failed_mass.'//trim(scene%solid%material(k)%name), labels%mass)
+      material = material_names(scene%solid)
+      do k = 1, size(material)
+        call add('solid.mass.'//trim(material(k)), labels%mass)
+        call add('solid.internal_energy.'//trim(material(k)), labels%energy)
+        call add('solid.kinetic_energy.'//trim(material(k)), labels%energy)
+        call add('solid.plastic_work.'//trim(material(k)), labels%energy)
+        call add('solid.failed_mass.'//trim(material(k)), labels%mass)
       end do
       call add_vector('solid.momentum', labels%momentum)
       call add_vector('solid.impulse_of_supports', labels%momentum)
       call add('solid.mass_that_left', labels%mass)
       call add('solid.particles_that_left', '-')
+      if (allocated(scene%solid%pair)) then
+        do k = 1, size(scene%solid%pair)
+          call add_vector('contact.impulse.'//trim(scene%solid%pair(k)%name), labels%momentum)
+          call add('contact.friction_work.'//trim(scene%solid%pair(k)%name), labels%energy)
+        end do
+      end if
     end if
     if (scene%coupled) then
       call add_vector('coupling.impulse_on_solid', labels%momentum)
@@ -89,7 +98,7 @@ contains
     type(series), intent(inout) :: table
     type(scene_type), intent(in) :: scene
     type(balance_type), intent(in) :: balance
-    real(wp), allocatable :: row(:)
+    real(wp), allocatable :: row(:), by_material(:, :)
     integer :: k
     allocate (row(0))
     row = [row, scene%clock%time, scene%clock%dt, real(scene%clock%flow_steps, wp), real(scene%clock%solid_steps, wp)]
@@ -101,11 +110,23 @@ contains
     end if
     if (scene%has_solid) then
       associate (solid => balance%solid)
-        do k = 1, scene%solid%n_sets
-          row = [row, solid%mass(k), solid%internal(k), solid%kinetic(k), solid%plastic_work(k), solid%failed_mass(k)]
+        associate (s => scene%solid)
+          by_material = reshape([sum_by_material(s, solid%mass), sum_by_material(s, solid%internal), &
+                                 sum_by_material(s, solid%kinetic), sum_by_material(s, solid%plastic_work), &
+                                 sum_by_material(s, solid%failed_mass)], [size(material_names(s)), 5])
+        end associate
+        do k = 1, size(by_material, 1)
+          row = [row, by_material(k, :)]
         end do
         row = [row, pack(sum(solid%momentum, dim=2), scene%mesh%active), pack(balance%support_impulse, scene%mesh%active), &
                solid%books(book_lost_mass), solid%books(book_lost_count)]
+        if (allocated(scene%solid%pair)) then
+          do k = 1, size(scene%solid%pair)
+            associate (books => solid%books(n_books + n_contact_books*(k - 1) + 1:n_books + n_contact_books*k))
+              row = [row, pack(books(book_contact_impulse:book_contact_impulse + 2), scene%mesh%active), books(book_contact_work)]
+            end associate
+          end do
+        end if
       end associate
     end if
     if (scene%coupled) row = [row, pack(balance%exchanged, scene%mesh%active), balance%work_on_solid, balance%taken_from_flow, &

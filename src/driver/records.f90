@@ -24,6 +24,7 @@ module records
   use snapshot_header, only: snapshot_clock
   use snapshots, only: snapshots_type, start_snapshots, put_flow_snapshot, put_solid_snapshot, put_peak_snapshot, &
     step_text
+  use solid_state, only: material_names
   use stopping, only: stop_reason, wall_seconds, go_on, reason_name
   use summary, only: write_summary, summary_figures
   use text, only: str
@@ -257,7 +258,7 @@ contains
     associate (output => scene%deck%output, solid => scene%solid, clock => scene%clock)
       call find_fragments(scene%mesh, solid, output%fragment_reach, output%fragment_damage, records%fragments, label)
       call write_fragments(records%folder//'/fragments_'//step_text(clock%step)//'.csv', records%fragments%fragment, &
-                           solid%material%name, solid%body_name, records%labels)
+                           material_names(solid), solid%body_name, records%labels)
       if (output%solid_snapshots) call put_solid_snapshot(records%snapshots, scene%mesh, clock%time, clock%step, solid, label)
     end associate
   end subroutine put_fragments

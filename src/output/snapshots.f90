@@ -10,7 +10,7 @@ module snapshots
   use peak_maps, only: peak_arrival, peak_impulse, peak_maps_type, peak_overpressure
   use snapshot_header, only: snapshot_clock
   use snapshot_series, only: add_snapshot, snapshot_list, start_list
-  use solid_state, only: solid_type
+  use solid_state, only: solid_type, material_names, materials_of_sets
   use text, only: join, str
   use units, only: unit_labels_type
   use vtkhdf_grid, only: close_grid_file, create_grid_file, grid_file, put_cells
@@ -95,7 +95,7 @@ contains
     call create_point_file(file, name, clock_of(snapshots, time, step), mesh, &
       columns(solid%block, at_position, 3))
     associate (labels => snapshots%labels, particle => solid%block)
-      call put_attribute(file%hdf5, 'brisance', 'materials', join(solid%material%name, ';'))
+      call put_attribute(file%hdf5, 'brisance', 'materials', join(material_names(solid), ';'))
       call put_attribute(file%hdf5, 'brisance', 'bodies', join(solid%body_name, ';'))
       call put_points(file, 'velocity', labels%velocity, columns(particle, at_velocity, 3), 3)
       allocate (stress(6*sum(particle%n)))
@@ -106,7 +106,7 @@ contains
       call put_points(file, 'plastic_strain', '-', columns(particle, at_plastic_strain, 1))
       call put_points(file, 'density', labels%density, columns(particle, at_mass, 1)/columns(particle, at_volume, 1))
       call put_points(file, 'volume', volume_unit(labels%length), columns(particle, at_volume, 1))
-      call put_points(file, 'material', '-', numbers(particle, 1), one_byte=solid%n_sets < 256)
+      call put_points(file, 'material', '-', numbers(particle, 1, materials_of_sets(solid)), one_byte=solid%n_sets < 256)
       call put_points(file, 'body', '-', numbers(particle, 2))
       call put_points(file, 'id', '-', numbers(particle, 3))
       if (present(fragment)) call put_points(file, 'fragment', '-', fragment)
@@ -162,10 +162,11 @@ contains
     end do
   end function columns
 
-  !> which: 1 set, 2 body, 3 id of all particles, in the order of columns.
-  pure function numbers(particle, which) result(values)
+  !> which: 1 material, 2 body, 3 id of all particles, in the order of columns. material: of each set.
+  pure function numbers(particle, which, material) result(values)
     type(particle_block), intent(in) :: particle(:, :)
     integer, intent(in) :: which
+    integer, intent(in), optional :: material(:)
     integer, allocatable :: values(:)
     integer :: set, b, n, place
     allocate (values(sum(particle%n)))
@@ -173,7 +174,7 @@ contains
     do b = 1, size(particle, 2)
       do set = 1, size(particle, 1)
         n = particle(set, b)%n
-        if (which == 1) values(place + 1:place + n) = set
+        if (which == 1) values(place + 1:place + n) = material(set)
         if (which == 2) values(place + 1:place + n) = particle(set, b)%body(:n)
         if (which == 3) values(place + 1:place + n) = particle(set, b)%id(:n)
         place = place + n

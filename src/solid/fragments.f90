@@ -14,7 +14,7 @@ module fragments
   use particles, only: at_position, at_velocity, at_mass, at_damage
   use reductions, only: reduce_sum
   use solid_material, only: model_fluid
-  use solid_state, only: solid_type
+  use solid_state, only: solid_type, sum_by_material
   implicit none
   private
   public :: find_fragments
@@ -33,7 +33,7 @@ module fragments
     real(wp) :: lower(3) = 0, upper(3) = 0 !< box around its particles
     real(wp) :: spacing = 0 !< mean spacing of its particles at rest
     real(wp) :: diameter = 0 !< of the sphere (disc, length) of the same volume at rest
-    real(wp), allocatable :: material_mass(:) !< by set
+    real(wp), allocatable :: material_mass(:) !< by material
   end type fragment_type
 
   type, public :: fragment_list
@@ -82,6 +82,10 @@ contains
     call join_parts(mesh, solid%n_sets, reach, largest, parts, list, number)
     do i = 1, size(label)
       if (label(i) > 0) label(i) = number(label(i))
+    end do
+    if (.not. allocated(list%fragment)) return
+    do i = 1, size(list%fragment)
+      list%fragment(i)%material_mass = sum_by_material(solid, list%fragment(i)%material_mass)
     end do
   end subroutine find_fragments
 

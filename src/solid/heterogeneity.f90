@@ -26,12 +26,13 @@ contains
     integer :: i, set
     if (.not. allocated(deck%heterogeneity)) return
     do i = 1, size(deck%heterogeneity)
-      set = findloc(used, material_of(deck, deck%heterogeneity(i)), dim=1)
-      if (set == 0) cycle
-      associate (m => solid%material(set))
-        if (m%at_strength == 0) call claim_columns(m, 1, m%at_strength)
-        if (m%at_stiffness == 0 .and. deck%heterogeneity(i)%stiffness_exponent > 0) call claim_columns(m, 1, m%at_stiffness)
-      end associate
+      do set = 1, solid%n_sets
+        if (used(set) /= material_of(deck, deck%heterogeneity(i))) cycle
+        associate (m => solid%material(set))
+          if (m%at_strength == 0) call claim_columns(m, 1, m%at_strength)
+          if (m%at_stiffness == 0 .and. deck%heterogeneity(i)%stiffness_exponent > 0) call claim_columns(m, 1, m%at_stiffness)
+        end associate
+      end do
     end do
   end subroutine claim_factors
 
@@ -53,6 +54,7 @@ contains
     type(solid_type), intent(inout) :: solid
     type(random_field_type) :: field
     integer :: i, b, set, number
+    logical :: concerned(size(pieces))
     if (.not. allocated(deck%heterogeneity)) return
     do set = 1, solid%n_sets
       associate (m => solid%material(set))
@@ -66,36 +68,29 @@ contains
     end do
     do i = 1, size(deck%heterogeneity)
       associate (group => deck%heterogeneity(i))
-        set = findloc(used, material_of(deck, group), dim=1)
         number = 0
         if (group%body /= '') number = body(find_body(deck, group%body))
-        if (.not. any(concerned(pieces, set, number))) cycle
-        field = field_over(mesh, group, pieces, set, number)
-        call apply_field(group, field, set, number, solid)
+        concerned = used(pieces%set) == material_of(deck, group) .and. (number == 0 .or. pieces%body == number)
+        if (.not. any(concerned)) cycle
+        field = field_over(mesh, group, pack(pieces, concerned))
+        do set = 1, solid%n_sets
+          if (used(set) == material_of(deck, group)) call apply_field(group, field, set, number, solid)
+        end do
       end associate
     end do
   end subroutine set_factors
 
-  !> The pieces that a group is about: of one material and, unless number is 0, of one body.
-  elemental logical function concerned(piece, set, number)
-    type(piece_type), intent(in) :: piece
-    integer, intent(in) :: set, number
-    concerned = piece%set == set .and. (number == 0 .or. piece%body == number)
-  end function concerned
-
-  !> The field over the box around all pieces, as far as they lie in the domain.
-  function field_over(mesh, group, pieces, set, number) result(field)
+  !> The field over the box around all pieces that a group is about, as far as they lie in the domain.
+  function field_over(mesh, group, pieces) result(field)
     type(mesh_type), intent(in) :: mesh
     type(heterogeneity_group), intent(in) :: group
     type(piece_type), intent(in) :: pieces(:)
-    integer, intent(in) :: set, number
     type(random_field_type) :: field
     real(wp) :: lower(3), upper(3)
     integer :: i
     lower = mesh%upper
     upper = mesh%lower
     do i = 1, size(pieces)
-      if (.not. concerned(pieces(i), set, number)) cycle
       lower = min(lower, max(pieces(i)%shape%lower, mesh%lower))
       upper = max(upper, min(pieces(i)%shape%upper, mesh%upper))
     end do

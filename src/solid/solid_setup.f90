@@ -1,5 +1,6 @@
 !> Makes the solid of a deck: materials, bodies with holes and reinforcement, supports.
 module solid_setup
+  use contact_fields, only: choose_fields
   use deck_types, only: deck_type, body_group, reinforcement_group, unset, find_material, find_body, word_length
   use errors, only: fatal, exit_bad_input
   use heterogeneity, only: claim_factors, set_factors
@@ -13,7 +14,7 @@ module solid_setup
   use solid_material, only: make_solid_material, claim_columns, model_fluid, model_rigid
   use solid_shapes, only: shape_type, box_shape, sphere_shape, cylinder_shape, ogive_shape
   use solid_state, only: solid_type, n_books, face_free, face_symmetry, face_clamped, clamp_box, n_cells_of, scheme_musl, &
-    scheme_usl, scheme_usf
+    scheme_usl, scheme_usf, n_contact_books, contact_pair
   use supports, only: find_supports
   implicit none
   private
@@ -28,19 +29,20 @@ contains
     type(deck_type), intent(in) :: deck
     type(solid_type), intent(out) :: solid
     type(piece_type), allocatable, intent(out) :: pieces(:)
-    integer, allocatable :: used(:)
+    integer, allocatable :: used(:), field(:)
     integer :: i
     solid%present = size(deck%body) > 0
     solid%cfl = deck%solid%cfl
     solid%gravity = merge(deck%solid%gravity, 0.0_wp, mesh%active)
     call choose_numerics(mesh, deck, solid)
-    call choose_materials(deck, solid, used)
-    call claim_factors(deck, used, solid)
     call number_bodies(deck, solid)
+    call choose_contacts(deck, solid, field)
+    call choose_materials(deck, field, solid, used)
+    call claim_factors(deck, used, solid)
     call list_rigid(mesh, deck, used, solid)
     call set_supports(mesh, deck, solid)
     call allocate_solid(mesh, solid)
-    call make_pieces(mesh, deck, used, solid, pieces)
+    call make_pieces(mesh, deck, used, field, solid, pieces)
     call generate_particles(mesh, solid, pieces)
     call set_factors(mesh, deck, used, [(body_number(deck, deck%body(i)%name), i=1, size(deck%body))], pieces, solid)
     call start_rigid(mesh, solid)
@@ -50,12 +52,17 @@ contains
   subroutine allocate_solid(mesh, solid)
     type(mesh_type), intent(in) :: mesh
     type(solid_type), intent(inout) :: solid
-    integer :: b, set
+    integer :: b, set, n
+    n = n_books
+    if (allocated(solid%pair)) then
+      n = n + n_contact_books*size(solid%pair)
+      allocate (solid%surface(solid%n_fields, mesh%n_local), solid%meeting(mesh%n_local))
+    end if
     allocate (solid%block(solid%n_sets, mesh%n_local), solid%count(mesh%n_local), solid%support(mesh%n_local))
     allocate (solid%node(solid%n_fields, mesh%n_local), solid%force(solid%n_fields, mesh%n_local))
     allocate (solid%mapped(solid%n_fields, mesh%n_local))
     allocate (solid%limit(solid%n_sets, mesh%n_local))
-    allocate (solid%books(n_books, mesh%n_local), source=0.0_wp)
+    allocate (solid%books(n, mesh%n_local), source=0.0_wp)
     do b = 1, mesh%n_local
       do set = 1, solid%n_sets
         call allocate_particles(solid%block(set, b), n_cells_of(mesh), solid%material(set)%n_field)
@@ -84,29 +91,65 @@ contains
     end select
   end subroutine choose_numerics
 
-  !> One set per material that a body or a reinforcement names, in the order of their first use.
-  subroutine choose_materials(deck, solid, used)
+  !> Velocity fields of the bodies, by their numbers, from the contacts of the deck. Of several for the same two the last holds.
+  subroutine choose_contacts(deck, solid, field)
     type(deck_type), intent(in) :: deck
+    type(solid_type), intent(inout) :: solid
+    integer, allocatable, intent(out) :: field(:)
+    type(contact_pair), allocatable :: pair(:)
+    real(wp) :: friction(solid%n_bodies, solid%n_bodies)
+    integer :: c, i, j, one, two
+    allocate (field(solid%n_bodies), source=1)
+    if (.not. allocated(deck%contact)) return
+    friction = -1
+    do c = 1, size(deck%contact)
+      one = body_number(deck, deck%contact(c)%body_1)
+      two = body_number(deck, deck%contact(c)%body_2)
+      do j = 1, solid%n_bodies
+        do i = 1, solid%n_bodies
+          if (i == j .or. (one > 0 .and. one /= i) .or. (two > 0 .and. two /= j)) cycle
+          friction(i, j) = deck%contact(c)%friction
+          friction(j, i) = deck%contact(c)%friction
+        end do
+      end do
+    end do
+    call choose_fields(friction, solid%body_name(:solid%n_bodies), field, pair)
+    solid%n_fields = maxval([1, field])
+    if (size(pair) > 0) call move_alloc(pair, solid%pair)
+  end subroutine choose_contacts
+
+  !> One set per material that a body or a reinforcement names and velocity field of the body, in the order of their first use.
+  !> field: by body number; used: material of the deck of each set.
+  subroutine choose_materials(deck, field, solid, used)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: field(:)
     type(solid_type), intent(inout) :: solid
     integer, allocatable, intent(out) :: used(:)
     integer :: i, m
-    allocate (used(0))
+    allocate (used(0), solid%field_of_set(0))
     do i = 1, size(deck%body)
       m = find_material(deck, deck%body(i)%material)
       if (m == 0) call fatal("body '"//trim(deck%body(i)%name)//"': no material '"//trim(deck%body(i)%material)//"'", &
         exit_bad_input)
-      if (.not. any(used == m)) used = [used, m]
+      call use_material(m, field(body_number(deck, deck%body(i)%name)))
     end do
     do i = 1, size(deck%reinforcement)
       m = find_material(deck, deck%reinforcement(i)%material)
       if (m == 0) call fatal("reinforcement: no material '"//trim(deck%reinforcement(i)%material)//"'", exit_bad_input)
-      if (.not. any(used == m)) used = [used, m]
+      if (find_body(deck, deck%reinforcement(i)%body) == 0) call fatal("reinforcement: no body '"// &
+        trim(deck%reinforcement(i)%body)//"'", exit_bad_input)
+      call use_material(m, field(body_number(deck, deck%reinforcement(i)%body)))
     end do
     solid%n_sets = size(used)
-    allocate (solid%material(size(used)))
-    allocate (solid%field_of_set(size(used)), source=1)
+    allocate (solid%material(size(used)), solid%material_of_set(size(used)))
     allocate (solid%at_affine(size(used)), source=0)
     do i = 1, size(used)
+      m = findloc(used, used(i), dim=1)
+      if (m < i) then
+        solid%material_of_set(i) = solid%material_of_set(m)
+      else
+        solid%material_of_set(i) = maxval([0, solid%material_of_set(:i - 1)]) + 1
+      end if
       solid%material(i) = make_solid_material(deck%material(used(i)), deck%solid%bulk_viscosity)
       if (deck%solid%transfer == 'apic' .and. solid%material(i)%model /= model_rigid) &
         call claim_columns(solid%material(i), 9, solid%at_affine(i))
@@ -121,6 +164,16 @@ contains
     if (.not. all(solid%material%model == model_rigid)) solid%n_fields = solid%n_fields + 1
     solid%rigid_field = solid%n_fields
     where (solid%material%model == model_rigid) solid%field_of_set = solid%rigid_field
+
+  contains
+
+    subroutine use_material(material, its_field)
+      integer, intent(in) :: material, its_field
+      if (any(used == material .and. solid%field_of_set == its_field)) return
+      used = [used, material]
+      solid%field_of_set = [solid%field_of_set, its_field]
+    end subroutine use_material
+
   end subroutine choose_materials
 
   !> Bodies are numbered by their names in the order of the deck.
@@ -233,10 +286,10 @@ contains
 
   !> Bodies in the order of the deck, then bars. A shape gives way to earlier shapes of its body, to the body's holes and bars;
   !> a bar gives way to earlier bars.
-  subroutine make_pieces(mesh, deck, used, solid, pieces)
+  subroutine make_pieces(mesh, deck, used, field, solid, pieces)
     type(mesh_type), intent(in) :: mesh
     type(deck_type), intent(in) :: deck
-    integer, intent(in) :: used(:)
+    integer, intent(in) :: used(:), field(:)
     type(solid_type), intent(in) :: solid
     type(piece_type), allocatable, intent(out) :: pieces(:)
     type(shape_type), allocatable :: bar(:), cut(:), shape(:)
@@ -265,8 +318,8 @@ contains
         piece%shape = shape(i)
         call move_alloc(cut, piece%cut)
         piece%lattice = body_lattice(mesh, shape(i), body%spacing)
-        piece%set = findloc(used, find_material(deck, body%material), dim=1)
         piece%body = body_number(deck, body%name)
+        piece%set = findloc(used == find_material(deck, body%material) .and. solid%field_of_set == field(piece%body), .true., dim=1)
         piece%velocity = body%velocity
         piece%velocity_gradient = body%velocity_gradient
       end associate
@@ -282,8 +335,8 @@ contains
         piece%shape = bar(i)
         call move_alloc(cut, piece%cut)
         piece%lattice = bar_lattice(mesh, bar(i), merge(bars%spacing, body%spacing, bars%spacing > 0))
-        piece%set = findloc(used, find_material(deck, bars%material), dim=1)
         piece%body = body_number(deck, body%name)
+        piece%set = findloc(used == find_material(deck, bars%material) .and. solid%field_of_set == field(piece%body), .true., dim=1)
         piece%velocity = body%velocity
         piece%velocity_gradient = body%velocity_gradient
       end associate

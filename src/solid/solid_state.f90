@@ -10,7 +10,8 @@ module solid_state
   use cell_functions, only: cell_frame
   implicit none
   private
-  public :: frame_of, n_cells_of, cell_coordinate, brick_particles, field_particles, match_nodes
+  public :: frame_of, n_cells_of, cell_coordinate, brick_particles, field_particles, match_nodes, materials_of_sets, &
+    material_names, sum_by_material
 
   !> When the stress is updated: with the velocities that start the step (USF), that end it (USL), or that are mapped back from the
   !> particles at its end (MUSL).
@@ -29,7 +30,10 @@ module solid_state
   integer, parameter, public :: book_lost_kinetic = 30, book_lost_internal = 31
   integer, parameter, public :: book_lost_count = 32
   integer, parameter, public :: book_gravity_impulse = 33 !< first of 3
-  integer, parameter, public :: n_books = 35
+  integer, parameter, public :: n_books = 35 !< contact adds n_contact_books for each pair
+  integer, parameter, public :: book_contact_impulse = 1 !< first of 3, behind n_books: impulse of a pair's second field on its first
+  integer, parameter, public :: book_contact_work = 4 !< likewise: work of a pair's friction, lost to the motion
+  integer, parameter, public :: n_contact_books = 4
 
   !> A velocity component of a node that is held at zero.
   type, public :: held_type
@@ -58,10 +62,28 @@ module solid_state
     integer :: index = 0 !< of the particle in its block
   end type limit_type
 
+  integer, parameter, public :: contact_open = 0, contact_slip = 1, contact_stick = 2
+
+  !> Two velocity fields that touch with friction.
+  type, public :: contact_pair
+    integer :: field(2) = 0
+    real(wp) :: friction = 0
+    character(64) :: name = '' !< of their bodies, for people
+  end type contact_pair
+
+  !> Nodes of a brick that two fields or more share, and what lies around them. See module contact_surfaces.
+  type, public :: contact_nodes
+    integer, allocatable :: node(:, :) !< (3, n) indices in the brick, from 0
+    real(wp), allocatable :: share(:, :) !< (field, n) this brick's part of the volume
+    real(wp), allocatable :: normal(:, :, :) !< (3, pair, n) from the first field to the second
+    integer, allocatable :: state(:, :) !< (pair, n) what the contact did in this step: contact_open, contact_slip, contact_stick
+  end type contact_nodes
+
   type, public :: solid_type
     logical :: present = .false. !< the scene has a solid
     integer :: n_sets = 0
     type(solid_material_type), allocatable :: material(:) !< of each set
+    integer, allocatable :: material_of_set(:) !< sets of one material that are in several fields have the same number
     integer :: n_bodies = 0
     character(64), allocatable :: body_name(:)
     integer :: n_particles = 0 !< in the scene at the start
@@ -74,6 +96,9 @@ module solid_state
     type(block), allocatable :: node(:, :) !< (field, local brick) mass and velocity of nodes (4); unallocated: no particles
     type(block), allocatable :: force(:, :) !< force, later velocity change of the nodes (3)
     type(block), allocatable :: mapped(:, :) !< velocity that strains the particles (3)
+    type(contact_pair), allocatable :: pair(:) !< fields that touch; the others stick where they meet. Unallocated: none touch
+    type(block), allocatable :: surface(:, :) !< (field, local brick) with contact: see module contact_surfaces (7)
+    type(contact_nodes), allocatable :: meeting(:) !< by local brick, with contact
     type(block), allocatable :: count(:) !< particles of all sets per cell (1, no ghosts)
     type(support_list), allocatable :: support(:) !< by local brick
     type(limit_type), allocatable :: limit(:, :) !< (set, local brick)
@@ -139,22 +164,61 @@ contains
     n = sum(solid%block(:, local)%n, mask=solid%field_of_set == field)
   end function field_particles
 
-  !> Node and count arrays exist exactly where there are particles.
+  !> Number of the material of each set, counted in the order of the sets.
+  pure function materials_of_sets(solid) result(material)
+    type(solid_type), intent(in) :: solid
+    integer, allocatable :: material(:)
+    integer :: set
+    if (allocated(solid%material_of_set)) then
+      material = solid%material_of_set
+    else
+      material = [(set, set=1, solid%n_sets)]
+    end if
+  end function materials_of_sets
+
+  !> Name of each material, each once.
+  pure function material_names(solid) result(name)
+    type(solid_type), intent(in) :: solid
+    character(len(solid%material%name)), allocatable :: name(:)
+    integer :: material(solid%n_sets), m
+    material = materials_of_sets(solid)
+    name = [(solid%material(findloc(material, m, dim=1))%name, m=1, maxval(material))]
+  end function material_names
+
+  !> Values of the sets, summed over those of one material.
+  pure function sum_by_material(solid, values) result(total)
+    type(solid_type), intent(in) :: solid
+    real(wp), intent(in) :: values(:) !< by set
+    real(wp), allocatable :: total(:)
+    integer :: material(solid%n_sets), set
+    material = materials_of_sets(solid)
+    allocate (total(maxval(material)), source=0.0_wp)
+    do set = 1, solid%n_sets
+      total(material(set)) = total(material(set)) + values(set)
+    end do
+  end function sum_by_material
+
+  !> Node and count arrays exist exactly where there are particles; with contact, those of all fields where there are any.
   subroutine match_nodes(mesh, solid)
     type(mesh_type), intent(in) :: mesh
     type(solid_type), intent(inout) :: solid
     integer, parameter :: no_ghosts(3) = 0
     integer :: b, field, last(3)
+    logical :: needed
     last = last_node(mesh, solid%order)
     do b = 1, mesh%n_local
       do field = 1, solid%n_fields
-        if (field_particles(solid, field, b) > 0) then
+        needed = field_particles(solid, field, b) > 0
+        if (allocated(solid%pair)) needed = brick_particles(solid, b) > 0
+        if (needed) then
           if (allocated(solid%node(field, b)%a)) cycle
           call allocate_nodes(solid%node(field, b), last, 4)
           call allocate_nodes(solid%force(field, b), last, 3)
           call allocate_nodes(solid%mapped(field, b), last, 3)
+          if (allocated(solid%pair)) call allocate_nodes(solid%surface(field, b), last, 7)
         else if (allocated(solid%node(field, b)%a)) then
           deallocate (solid%node(field, b)%a, solid%force(field, b)%a, solid%mapped(field, b)%a)
+          if (allocated(solid%pair)) deallocate (solid%surface(field, b)%a)
         end if
       end do
       if (brick_particles(solid, b) == 0) then

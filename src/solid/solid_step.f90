@@ -6,6 +6,8 @@
 module solid_step
   use blocks, only: block, allocate_nodes
   use cell_functions, only: cell_frame, chunk
+  use contact, only: meet_fields, keep_contact
+  use contact_surfaces, only: find_surfaces
   use halo, only: halo_type, add, last_node
   use kinds, only: wp
   use mesh, only: mesh_type
@@ -103,6 +105,7 @@ contains
     type(loaded_cells) :: loaded(mesh%n_local)
     type(outbox_type) :: outbox
     integer :: b, set, field
+    if (allocated(solid%pair)) call find_surfaces(mesh, halo, solid)
     if (solid%scheme == scheme_usf) call strain_first(mesh, solid, dt)
     do b = 1, mesh%n_local
       if (.not. allocated(solid%count(b)%a)) cycle
@@ -122,6 +125,11 @@ contains
         call add_change(solid%node(field, b)%a, solid%force(field, b)%a)
       end do
     end do
+    if (allocated(solid%pair)) then
+      do b = 1, mesh%n_local
+        call meet_fields(mesh, solid, b, solid%meeting(b), 1, solid%node(:, b), solid%force(:, b), solid%books(:, b))
+      end do
+    end if
     do b = 1, mesh%n_local
       if (.not. allocated(solid%count(b)%a)) cycle
       call book_load(solid, b, dt, frame_of(mesh, solid%order, b), loaded(b))
@@ -185,6 +193,11 @@ contains
         end if
       end do
     end do
+    if (allocated(solid%pair) .and. solid%scheme == scheme_musl) then
+      do b = 1, mesh%n_local
+        call keep_contact(solid%pair, solid%meeting(b), solid%node(:, b), solid%mapped(:, b))
+      end do
+    end if
   end subroutine find_straining_velocity
 
   !> USF: stresses from the velocities that start the step, then the internal forces anew.
@@ -205,6 +218,7 @@ contains
         solid%force(field, b)%a = 0
         call allocate_nodes(unused(field), last_node(mesh, solid%order), 4)
       end do
+      if (allocated(solid%pair)) call meet_fields(mesh, solid, b, solid%meeting(b), 0, solid%mapped(:, b))
       do set = 1, solid%n_sets
         field = solid%field_of_set(set)
         if (solid%block(set, b)%n == 0 .or. field == solid%rigid_field) cycle

@@ -4,7 +4,7 @@ module solid_totals
   use mesh, only: mesh_type
   use particles, only: at_position, at_velocity, at_mass, at_energy, at_damage, at_plastic_work, at_plastic_strain
   use reductions, only: reduce_sum
-  use solid_state, only: solid_type, n_books
+  use solid_state, only: solid_type
   implicit none
   private
   public :: sum_solid
@@ -20,7 +20,7 @@ module solid_totals
     real(wp), allocatable :: plastic_work(:)
     real(wp), allocatable :: failed_mass(:) !< of particles whose damage is 1
     real(wp), allocatable :: largest_strain(:) !< plastic strain, on this rank only
-    real(wp) :: books(n_books) = 0 !< book_* of solid_state
+    real(wp), allocatable :: books(:) !< book_* of solid_state
   end type solid_totals_type
 
   integer, parameter :: n_sums = 10
@@ -32,7 +32,8 @@ contains
     type(mesh_type), intent(in) :: mesh
     type(solid_type), intent(in) :: solid
     type(solid_totals_type) :: totals
-    real(wp) :: partial(n_sums*solid%n_sets + n_books, mesh%n_local), all(n_sums*solid%n_sets + n_books), sums(n_sums)
+    real(wp) :: partial(n_sums*solid%n_sets + size(solid%books, 1), mesh%n_local), sums(n_sums)
+    real(wp) :: all(n_sums*solid%n_sets + size(solid%books, 1))
     integer :: b, set, n
     n = solid%n_sets
     allocate (totals%largest_strain(n), source=0.0_wp)

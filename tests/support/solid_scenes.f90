@@ -27,7 +27,7 @@ contains
   subroutine empty_deck(deck)
     type(deck_type), intent(out) :: deck
     allocate (deck%material(0), deck%region(0), deck%charge(0), deck%body(0), deck%hole(0), deck%reinforcement(0))
-    allocate (deck%heterogeneity(0), deck%clamp(0), deck%gauge(0), deck%material_test(0))
+    allocate (deck%heterogeneity(0), deck%clamp(0), deck%contact(0), deck%gauge(0), deck%material_test(0))
     call set_faces(deck, 'free')
   end subroutine empty_deck
 
