@@ -31,7 +31,7 @@ module solid_state
   integer, parameter, public :: book_lost_count = 32
   integer, parameter, public :: book_gravity_impulse = 33 !< first of 3
   integer, parameter, public :: n_books = 35 !< contact adds n_contact_books for each pair
-  integer, parameter, public :: book_contact_impulse = 1 !< first of 3, behind n_books: impulse of a pair's second field on its first
+  integer, parameter, public :: book_contact_impulse = 1 !< first of 3 behind n_books: impulse on the first field of a pair
   integer, parameter, public :: book_contact_work = 4 !< likewise: work of a pair's friction, lost to the motion
   integer, parameter, public :: n_contact_books = 4
 
