@@ -239,6 +239,8 @@ contains
     if (lowercase(trim(contact%body_2)) /= 'all') call refer_to_body(deck, contact%body_2, table, problems, 'body_2')
     if (lowercase(trim(contact%body_1)) == lowercase(trim(contact%body_2)) .and. lowercase(trim(contact%body_1)) /= 'all') &
       call problems%add_at_key(table, 'body_2', 'body '''//trim(contact%body_2)//''' can''t be in contact with itself')
+    if (any(deck%material%model == 'rigid')) &
+      call problems%add_at_key(table, 'body_1', 'contact does not know rigid bodies (model = ''rigid'')')
   end subroutine check_contact
 
   subroutine refer_to_solid(deck, name, table, problems)
