@@ -28,7 +28,7 @@ module immersed_boundary
 
   integer, parameter, public :: booked_impulse = 1 !< first of 3: momentum given to the solid
   integer, parameter, public :: booked_reference = 4 !< first of 3: impulse of the reference pressure on closed faces
-  integer, parameter, public :: booked_kinetic = 7 !< kinetic energy taken from the fluid by forcing
+  integer, parameter, public :: booked_kinetic = 7 !< energy taken from the fluid by forcing and by drag
   integer, parameter, public :: booked_uncovered = 8 !< cells opened
   integer, parameter, public :: booked_covered = 9 !< cells closed
   integer, parameter, public :: booked_gas = 10 !< first of n_conserved: gas that uncovering added less what covering took away
@@ -311,7 +311,7 @@ contains
     if (stage < 3) return
     do b = 1, mesh%n_local
       if (coupling%list(b)%n_loose > 0) call drag_loose(flow%layout, flow%eos, mesh%ghost, dt, mesh%cell_volume, coupling%list(b), &
-        flow%w(b, flow%target(stage))%a)
+        flow%w(b, flow%target(stage))%a, coupling%partial(booked_kinetic, b))
     end do
   end subroutine force_stage
 

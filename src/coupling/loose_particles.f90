@@ -100,14 +100,16 @@ contains
 
   end subroutine list_loose
 
-  !> What drag does in dt to the gas of the loose cells at the end of the list; the momentum goes to list%impulse. w: state of the flow.
-  subroutine drag_loose(layout, eos, ghost, dt, cell_volume, list, w)
+  !> What drag does in dt to the gas of the loose cells at the end of the list; the momentum goes to list%impulse. w: state of the
+  !> flow; taken: energy that leaves the gas with it (summed up).
+  subroutine drag_loose(layout, eos, ghost, dt, cell_volume, list, w, taken)
     type(layout_type), intent(in) :: layout
     type(eos_type), intent(in) :: eos(:)
     integer, intent(in) :: ghost(3)
     real(wp), intent(in) :: dt, cell_volume
     type(interface_list), intent(inout) :: list
     real(wp), intent(inout) :: w(1 - ghost(1):, :, 1 - ghost(2):, 1 - ghost(3):)
+    real(wp), intent(inout) :: taken
     real(wp) :: cell(layout%n_rows), a(layout%n_materials), v(3), relative(3), impulse(3), gas, reduced, rate, heat
     integer :: c, q, first
     first = layout%velocity_row
@@ -128,6 +130,7 @@ contains
         call close_cell(layout, eos, cell)
         w(i, :layout%n_rows, j, k) = cell
         list%impulse(:, c) = list%impulse(:, c) + impulse
+        taken = taken + sum(impulse*list%velocity(:, c))
       end associate
     end do
   end subroutine drag_loose

@@ -319,7 +319,7 @@ contains
         call move_alloc(cut, piece%cut)
         piece%lattice = body_lattice(mesh, shape(i), body%spacing)
         piece%body = body_number(deck, body%name)
-        piece%set = findloc(used == find_material(deck, body%material) .and. solid%field_of_set == field(piece%body), .true., dim=1)
+        piece%set = set_of(body%material, piece%body)
         piece%velocity = body%velocity
         piece%velocity_gradient = body%velocity_gradient
       end associate
@@ -336,7 +336,7 @@ contains
         call move_alloc(cut, piece%cut)
         piece%lattice = bar_lattice(mesh, bar(i), merge(bars%spacing, body%spacing, bars%spacing > 0))
         piece%body = body_number(deck, body%name)
-        piece%set = findloc(used == find_material(deck, bars%material) .and. solid%field_of_set == field(piece%body), .true., dim=1)
+        piece%set = set_of(bars%material, piece%body)
         piece%velocity = body%velocity
         piece%velocity_gradient = body%velocity_gradient
       end associate
@@ -346,6 +346,17 @@ contains
       if (i <= size(deck%body)) pressure = deck%body(i)%pressure
       call set_fluid_state(deck, solid, pressure, pieces(i))
     end do
+
+  contains
+
+    !> Set of a material in a body; rigid ones are all in the field of the rigid.
+    integer function set_of(material, body)
+      character(*), intent(in) :: material
+      integer, intent(in) :: body
+      set_of = findloc(used == find_material(deck, material) .and. (solid%field_of_set == field(body) .or. &
+                                                                    solid%material%model == model_rigid), .true., dim=1)
+    end function set_of
+
   end subroutine make_pieces
 
   !> All bars that touch the domain; owner: first body group of their body; group: their reinforcement group.
