@@ -55,7 +55,7 @@ contains
     integer :: brick(3)
     name = solid_scene_names(which)
     call empty_deck(scene%deck)
-    if (index(name, 'splines') + index(name, 'affine') > 0) scene%deck%solid%shape = 'quadratic'
+    scene%deck%solid%shape = merge('quadratic', 'linear   ', index(name, 'splines') + index(name, 'affine') > 0)
     if (index(name, 'affine') > 0) scene%deck%solid%transfer = 'apic'
     scene%deck%boundary%solid_z_low = 'symmetry'
     if (name(:3) == 'hjc') then
