@@ -49,7 +49,6 @@ module immersed_boundary
     real(wp), allocatable :: books(:) !< (booked_*) since the start, all bricks
     logical :: started = .false. !< cell types of an earlier step are known
     logical :: moving_wall = .false. !< interface cells are closed and their faces are walls that move; else lg-CFIBM
-    logical :: slip = .true. !< of walls that move
     real(wp) :: closed_from = 0.5_wp*(interface_cell + inside_cell) !< cells of this kind or above hold no flow
     type(block), allocatable :: solid_part(:) !< part of each cell that is solid, for walls that move
   end type coupling_type
@@ -268,7 +267,6 @@ contains
     type(flow_type), intent(inout) :: flow
     type(coupling_type), intent(inout) :: coupling
     integer :: b, c
-    flow%slip = coupling%slip
     call fill(mesh, halo, coupling%solid_part, 1)
     do b = 1, mesh%n_local
       call mirror_ghosts(mesh, mesh%local(b), coupling%solid_part(b))

@@ -73,7 +73,7 @@ contains
       ambient = scene%deck%flow%ambient_pressure
       call start_coupling(scene%coupling, scene%mesh, scene%flow, ambient, &
                           trim(lowercase(scene%deck%coupling%method)) == 'moving_wall')
-      scene%coupling%slip = trim(lowercase(scene%deck%coupling%wall)) == 'slip'
+      scene%flow%slip = trim(lowercase(scene%deck%coupling%wall)) == 'slip'
       call immerse_solid(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
       if (scene%deck%output%loads) call start_loads(scene%loads, scene%mesh, scene%solid, 0.01_wp*abs(ambient))
     end if
