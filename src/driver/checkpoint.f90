@@ -10,10 +10,12 @@ module checkpoint
   use restart_fields, only: restart_put_blocks, restart_get_blocks, restart_put_table, restart_get_table
   use restart_files, only: restart_file, create_restart, open_restart, close_restart
   use restart_particles, only: restart_put_particles, restart_get_particles
-  use restart_values, only: restart_put, restart_get
+  use restart_values, only: restart_put, restart_get, restart_count
   use rigid_bodies, only: pack_rigid, unpack_rigid
   use scene, only: scene_type
   use solid_step, only: project_solid
+  use stage_changes, only: release_flow
+  use stages, only: pack_stages, unpack_stages
   implicit none
   private
   public :: save_run, resume_run
@@ -34,9 +36,11 @@ contains
     call restart_put(file, 'flow_steps', scene%clock%n_flow_steps)
     call restart_put(file, 'solid_steps', scene%clock%n_solid_steps)
     call restart_put(file, 'first_balance', first)
+    call restart_put(file, 'stages', pack_stages(scene%stages))
     associate (mesh => scene%mesh, one => [1, 1, 1])
       if (scene%has_flow) then
-        call restart_put_blocks(file, 'flow', scene%flow%w(:, scene%flow%current), one, mesh%brick_cells)
+        if (scene%flow_runs()) &
+          call restart_put_blocks(file, 'flow', scene%flow%w(:, scene%flow%current), one, mesh%brick_cells)
         call restart_put_table(file, 'flow_books', [(size(scene%flow%books(:, :, b)), b=1, mesh%n_local)], &
                                reshape(scene%flow%books, [size(scene%flow%books)]))
         call MPI_Allreduce(scene%flow%repairs%count, repairs, size(repairs), MPI_INTEGER8, MPI_SUM, world)
@@ -49,7 +53,8 @@ contains
                                reshape(scene%solid%books, [size(scene%solid%books)]))
       end if
       if (scene%coupled) then
-        call restart_put_blocks(file, 'cell_type', scene%coupling%kind, 1 - mesh%ghost, mesh%brick_cells + mesh%ghost)
+        if (scene%flow_runs()) &
+          call restart_put_blocks(file, 'cell_type', scene%coupling%kind, 1 - mesh%ghost, mesh%brick_cells + mesh%ghost)
         call restart_put(file, 'coupling_books', scene%coupling%books)
         if (scene%loads%active) call restart_put_table(file, 'loads', [(size(scene%loads%impulse(:, :, b)), b=1, mesh%n_local)], &
                                                        reshape(scene%loads%impulse, [size(scene%loads%impulse)]))
@@ -78,9 +83,15 @@ contains
     call restart_get(file, 'flow_steps', scene%clock%n_flow_steps)
     call restart_get(file, 'solid_steps', scene%clock%n_solid_steps)
     call restart_get(file, 'first_balance', first)
+    allocate (values(restart_count(file, 'stages')))
+    call restart_get(file, 'stages', values)
+    call unpack_stages(values, scene%stages)
+    deallocate (values)
+    if (scene%stages%flow_over) call release_flow(scene)
     associate (mesh => scene%mesh, one => [1, 1, 1])
       if (scene%has_flow) then
-        call restart_get_blocks(file, 'flow', scene%flow%w(:, scene%flow%current), one, mesh%brick_cells)
+        if (scene%flow_runs()) &
+          call restart_get_blocks(file, 'flow', scene%flow%w(:, scene%flow%current), one, mesh%brick_cells)
         call restart_get_table(file, 'flow_books', counts, values)
         scene%flow%books = reshape(values, shape(scene%flow%books))
         call restart_get(file, 'flow_repairs', scene%flow%repairs%count)
@@ -100,9 +111,11 @@ contains
         call project_solid(mesh, scene%halo, scene%solid)
       end if
       if (scene%coupled) then
-        call restart_get_blocks(file, 'cell_type', scene%coupling%kind, 1 - mesh%ghost, mesh%brick_cells + mesh%ghost)
         call restart_get(file, 'coupling_books', scene%coupling%books)
-        call restore_coupling(mesh, scene%flow, scene%coupling)
+        if (scene%flow_runs()) then
+          call restart_get_blocks(file, 'cell_type', scene%coupling%kind, 1 - mesh%ghost, mesh%brick_cells + mesh%ghost)
+          call restore_coupling(mesh, scene%flow, scene%coupling)
+        end if
         if (scene%loads%active) then
           call restart_get_table(file, 'loads', counts, values)
           scene%loads%impulse = reshape(values, shape(scene%loads%impulse))

@@ -10,7 +10,7 @@ module flow_state
   use mesh, only: mesh_type
   implicit none
   private
-  public :: allocate_flow, set_inflow
+  public :: allocate_flow, set_inflow, release_cells
 
   integer, parameter, public :: face_outflow = 1, face_symmetry = 2, face_inflow = 3, face_periodic = 4
 
@@ -108,6 +108,12 @@ contains
       if (mesh%periodic(b)) flow%face(:, b) = face_periodic
     end do
   end subroutine allocate_flow
+
+  !> Gives the memory of a flow back that is needed no more; books and counts stay.
+  subroutine release_cells(flow)
+    type(flow_type), intent(inout) :: flow
+    deallocate (flow%w, flow%open, flow%wall_impulse, flow%wall, flow%troubled, flow%arrival)
+  end subroutine release_cells
 
   !> Buffer that stage 1, 2 or 3 writes; stage 3's becomes the state.
   pure integer function target_buffer(self, stage)
