@@ -12,7 +12,8 @@ module flow_state
   private
   public :: allocate_flow, set_inflow, release_cells
 
-  integer, parameter, public :: face_outflow = 1, face_symmetry = 2, face_inflow = 3, face_periodic = 4
+  integer, parameter, public :: face_outflow = 1, face_symmetry = 2, face_inflow = 3, face_periodic = 4, &
+    face_ambient = 5
 
   !> Kinds of repair that are counted.
   integer, parameter, public :: repair_negative_mass = 1, repair_clipped_fraction = 2, repair_relaxation = 3, &
@@ -47,6 +48,7 @@ module flow_state
     real(wp) :: gravity(3) = 0
     integer :: face(2, 3) = face_outflow !< condition at the low and high face of each direction
     real(wp), allocatable :: inflow(:) !< rows of the state that enters
+    real(wp), allocatable :: ambient(:) !< rows of the state beyond ambient faces
     type(block), allocatable :: open(:) !< 1 flows, 0 closed; allocated only in bricks with closed cells; ghosts filled
     type(block), allocatable :: wall_impulse(:) !< momentum (3) given to closed cells, in the open cell beside them; with open
     type(block), allocatable :: wall(:) !< of walls that move: velocity (3) in closed cells, normal (3) in open ones beside them
