@@ -11,7 +11,7 @@ module flow_initial
   use flow_filling, only: filling_type, share_of_regions, mixed_cell, trace_density, halvings_for
   use flow_scheme, only: scheme_type, scheme_from_words
   use flow_shapes, only: filled_shape, volume_in_box, shape_all, shape_box, shape_sphere, shape_cylinder, shape_half_space
-  use flow_state, only: flow_type, allocate_flow, set_inflow, face_outflow, face_symmetry, face_inflow, face_periodic
+  use flow_state, only: flow_type, allocate_flow, hold_cells, set_inflow, face_outflow, face_symmetry, face_inflow, face_periodic
   use geometry, only: cell_volumes
   use kinds, only: wp
   use log, only: say
@@ -19,6 +19,7 @@ module flow_initial
   use mesh, only: mesh_type
   use mixture, only: cell_from
   use reductions, only: reduce_sum, reduce_min
+  use sleeping_bricks, only: sleep_if_uniform
   use text, only: str, lowercase
   implicit none
   private
@@ -46,7 +47,8 @@ contains
       name(i) = deck%material(used(i))%name
       eos(i) = eos_of(deck%material(used(i)))
     end do
-    call allocate_flow(flow, mesh, name, eos)
+    call allocate_flow(flow, mesh, name, eos, without_cells=.true.)
+    flow%sleep = deck%flow%sleep
     flow%cfl = deck%flow%cfl
     flow%scheme = flow_scheme_of(deck)
     flow%trace_fraction = merge(deck%flow%trace_fraction, 0.0_wp, size(used) > 1)
@@ -325,6 +327,7 @@ contains
     real(wp) :: share(size(filling)), center(3)
     integer :: b, i, j, k
     do b = 1, mesh%n_local
+      call hold_cells(flow, mesh, b)
       do k = 1, mesh%brick_cells(3)
         do j = 1, mesh%brick_cells(2)
           do i = 1, mesh%brick_cells(1)
@@ -340,6 +343,7 @@ contains
           end do
         end do
       end do
+      call sleep_if_uniform(mesh, flow, b)
     end do
   end subroutine fill_bricks
 
@@ -446,7 +450,7 @@ contains
     slowest = huge(1.0_wp)
     associate (n => mesh%brick_cells)
       do b = 1, mesh%n_local
-        slowest = min(slowest, minval(flow%w(b, flow%current)%a(1:n(1), c, 1:n(2), 1:n(3))))
+        slowest = min(slowest, minval(flow%w(flow%holder(b), flow%current)%a(1:n(1), c, 1:n(2), 1:n(3))))
       end do
     end associate
     call reduce_min(slowest, nothing)

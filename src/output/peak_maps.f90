@@ -1,6 +1,6 @@
 !> What the blast did to each place: the highest overpressure, the impulse of the positive overpressure, the time of arrival.
 module peak_maps
-  use blocks, only: block
+  use blocks, only: block, holder
   use kinds, only: wp
   use mesh, only: mesh_type
   implicit none
@@ -38,8 +38,8 @@ contains
     end do
   end subroutine start_peaks
 
-  !> Takes in the state at a time. state, open: blocks of the flow and of its closed cells (0 closed; unallocated where
-  !> all are open); column: of the pressure; duration: the time that this state stands for in the integral
+  !> Takes in the state at a time. state, open: blocks of the flow (those of sleeping bricks are shared) and of its closed cells (0
+  !> closed; unallocated where all are open); column: of the pressure; duration: the time that this state stands for in the integral
   !> (the mean of the steps before and after it gives the trapezoidal rule).
   subroutine update_peaks(peaks, mesh, state, open, column, time, duration)
     type(peak_maps_type), intent(inout) :: peaks
@@ -47,23 +47,27 @@ contains
     type(block), intent(in) :: state(:), open(:)
     integer, intent(in) :: column
     real(wp), intent(in) :: time, duration
-    integer :: b, j, k, n
+    integer :: b, h, j, k, n
     logical :: all_open
     real(wp) :: ones(mesh%brick_cells(1))
     n = mesh%brick_cells(1)
     ones = 1
     do b = 1, mesh%n_local
-      if (.not. allocated(state(b)%a)) cycle
+      h = holder(state, b)
+      if (.not. allocated(state(h)%a)) cycle
+      if (h /= b) then
+        if (.not. state(h)%a(1, column, 1, 1) > peaks%ambient) cycle ! a sleeping brick is in one state
+      end if
       all_open = .true.
       if (b <= size(open)) all_open = .not. allocated(open(b)%a)
       do k = 1, mesh%brick_cells(3)
         do j = 1, mesh%brick_cells(2)
-          if (.not. any(state(b)%a(1:n, column, j, k) > peaks%ambient)) cycle ! nothing can change: spares the maps' memory
+          if (.not. any(state(h)%a(1:n, column, j, k) > peaks%ambient)) cycle ! nothing can change: spares the maps' memory
           if (all_open) then
-            call update_row(n, state(b)%a(1:n, column, j, k), ones, peaks%ambient, peaks%threshold, time, duration, &
+            call update_row(n, state(h)%a(1:n, column, j, k), ones, peaks%ambient, peaks%threshold, time, duration, &
               peaks%map(b)%a(:, 1, j, k), peaks%map(b)%a(:, 2, j, k), peaks%map(b)%a(:, 3, j, k))
           else
-            call update_row(n, state(b)%a(1:n, column, j, k), open(b)%a(1:n, 1, j, k), peaks%ambient, peaks%threshold, time, &
+            call update_row(n, state(h)%a(1:n, column, j, k), open(b)%a(1:n, 1, j, k), peaks%ambient, peaks%threshold, time, &
               duration, peaks%map(b)%a(:, 1, j, k), peaks%map(b)%a(:, 2, j, k), peaks%map(b)%a(:, 3, j, k))
           end if
         end do
