@@ -131,7 +131,8 @@ contains
                           merge(fluid_cell, inside_cell, coupling%moving_wall), coupling%list(b))
       if (coupling%moving_wall) call list_loose(mesh, solid, b, coupling%kind(b)%a(:, 1, :, :), coupling%closed_from, &
                                                 coupling%list(b))
-      if (coupling%list(b)%n > 0) call wake(flow, b)
+      flow%kept_awake(b) = coupling%list(b)%n > 0
+      if (flow%kept_awake(b)) call wake(flow, b)
     end do
   end subroutine immerse_solid
 

@@ -68,6 +68,7 @@ module flow_state
     type(repair_log) :: repairs
     type(stage_scratch) :: scratch
     logical :: sleep = .true. !< bricks in one uniform state hold no cells of their own and are not advanced
+    logical, allocatable :: kept_awake(:) !< local bricks whose cells the coupling changes between stages
     logical, allocatable :: closed(:) !< of each local brick: all its cells and those beside them are closed
     logical :: common_closed(most_common_states) = .false. !< common states of closed bricks, in which nothing flows
     type(stage_scratch) :: common_scratch
@@ -96,7 +97,7 @@ contains
     flow%layout = new_layout(eos)
     allocate (flow%w(mesh%n_local + most_common_states, 3), flow%open(mesh%n_local), flow%wall_impulse(mesh%n_local), &
       flow%wall(mesh%n_local), flow%troubled(mesh%n_local + 1), flow%arrival(mesh%n_local))
-    allocate (flow%closed(mesh%n_local), source=.false.)
+    allocate (flow%closed(mesh%n_local), flow%kept_awake(mesh%n_local), source=.false.)
     allocate (flow%eps2(flow%layout%n_reconstructed), source=no_noise)
     allocate (flow%steepest(flow%layout%n_reconstructed), source=4.0_wp)
     if (size(eos) > 1) then

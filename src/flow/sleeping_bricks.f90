@@ -171,7 +171,7 @@ contains
     integer, intent(in) :: b
     real(wp), intent(in) :: state(:)
     integer :: d
-    sleep_allowed = flow%sleep .and. .not. any(stage%afterburn > 0)
+    sleep_allowed = flow%sleep .and. .not. (flow%kept_awake(b) .or. any(stage%afterburn > 0))
     if (allocated(flow%open(b)%a) .or. allocated(flow%arrival(b)%a)) sleep_allowed = .false.
     associate (brick => mesh%brick(mesh%local(b)))
       do d = 1, 3
