@@ -18,8 +18,8 @@ module sleeping_bricks
   use parallel, only: world
   implicit none
   private
-  public :: is_asleep, wake, wake_in_stage, rouse, let_sleep, sleep_if_uniform, share_state, note_closed, advance_common_states, &
-    book_sleeper, awake_share
+  public :: is_asleep, wake, wake_in_stage, rouse, let_sleep, sleep_if_uniform, start_in_state, share_state, note_closed, &
+    advance_common_states, book_sleeper, awake_share
 
 contains
 
@@ -141,6 +141,19 @@ contains
     state = flow%w(b, flow%current)%a(1, :, 1, 1)
     if (all_in_state(flow%w(b, flow%current), [1, 1, 1], mesh%brick_cells, state)) call share_state(mesh, flow, b, state)
   end subroutine sleep_if_uniform
+
+  !> Local brick b starts with all its cells in one state, and sleeps if it may. For the set-up.
+  subroutine start_in_state(mesh, flow, b, state)
+    type(mesh_type), intent(in) :: mesh
+    type(flow_type), intent(inout) :: flow
+    integer, intent(in) :: b
+    real(wp), intent(in) :: state(:)
+    if (flow%sleep .and. .not. allocated(flow%arrival(b)%a)) then
+      call share_state(mesh, flow, b, state)
+    else
+      call hold_state(mesh, flow, b, state)
+    end if
+  end subroutine start_in_state
 
   !> True if all cells first..last have the bits of the state.
   pure logical function all_in_state(w, first, last, state)
