@@ -9,7 +9,7 @@ module checkpoint
   use mesh, only: mesh_type
   use mpi_f08, only: MPI_Allreduce, MPI_INTEGER8, MPI_SUM
   use parallel, only: is_root, world
-  use peak_maps, only: peak_maps_type
+  use peak_maps, only: peak_maps_type, restore_unreached
   use restart_fields, only: restart_put_blocks, restart_get_blocks, restart_put_table, restart_get_table
   use restart_files, only: restart_file, create_restart, open_restart, close_restart, restart_has
   use restart_particles, only: restart_put_particles, restart_get_particles
@@ -59,7 +59,7 @@ contains
         if (scene%loads%active) call restart_put_table(file, 'loads', [(size(scene%loads%impulse(:, :, b)), b=1, mesh%n_local)], &
                                                        reshape(scene%loads%impulse, [size(scene%loads%impulse)]))
       end if
-      if (allocated(peaks%map)) call restart_put_blocks(file, 'peaks', peaks%map, one, mesh%brick_cells)
+      if (allocated(peaks%map)) call restart_put_blocks(file, 'peaks', peaks%map(:mesh%n_local), one, mesh%brick_cells)
     end associate
     call save_gauges(gauges, file)
     call close_restart(file)
@@ -113,7 +113,10 @@ contains
           scene%loads%impulse = reshape(values, shape(scene%loads%impulse))
         end if
       end if
-      if (allocated(peaks%map)) call restart_get_blocks(file, 'peaks', peaks%map, one, mesh%brick_cells)
+      if (allocated(peaks%map)) then
+        call restart_get_blocks(file, 'peaks', peaks%map(:mesh%n_local), one, mesh%brick_cells, one, mesh%brick_cells)
+        call restore_unreached(peaks, mesh)
+      end if
     end associate
     if (scene%has_solid) then
       call resume_gauges(gauges, scene%mesh, folder, file, scene%solid)
