@@ -19,6 +19,7 @@ module immersed_boundary
   use mesh, only: mesh_type
   use mixture, only: cell_energies, close_cell
   use reductions, only: any_rank, reduce_sum
+  use sleeping_bricks, only: is_asleep, wake
   use solid_cover, only: cover_cells, smooth_part, wall_normals
   use solid_load, only: cell_velocity
   use solid_state, only: solid_type, frame_of
@@ -107,7 +108,7 @@ contains
     type(flow_type), intent(inout) :: flow
     type(coupling_type), intent(inout) :: coupling
     integer :: b
-    logical :: opened
+    logical :: opened(mesh%n_local)
     coupling%partial = 0
     do b = 1, mesh%n_local
       if (coupling%moving_wall) then
@@ -119,14 +120,15 @@ contains
     end do
     call classify_cells(mesh, halo, coupling%occupancy, coupling%kind)
     if (coupling%started) then
-      opened = .false.
       do b = 1, mesh%n_local
-        opened = opened .or. any(coupling%kind_before(b)%a > coupling%closed_from .and. &
-                                 coupling%kind(b)%a < coupling%closed_from)
+        opened(b) = any(coupling%kind_before(b)%a > coupling%closed_from .and. &
+                        coupling%kind(b)%a < coupling%closed_from)
+        if (any(abs(coupling%kind_before(b)%a - coupling%kind(b)%a) > 0)) call wake(flow, b)
       end do
-      if (any_rank(opened)) call fill(mesh, halo, flow%w(:, flow%current), flow%layout%n_rows, only_faces=.true.)
+      if (any_rank(any(opened))) call fill(mesh, halo, flow%w(:, flow%current), flow%layout%n_rows, only_faces=.true., &
+                                           unread=.not. opened)
       do b = 1, mesh%n_local
-        call answer_for_gas(mesh, flow, coupling, b)
+        if (.not. is_asleep(flow, b)) call answer_for_gas(mesh, flow, coupling, b)
       end do
     end if
     coupling%started = .true.
@@ -136,6 +138,8 @@ contains
                           merge(fluid_cell, inside_cell, coupling%moving_wall), coupling%list(b))
       if (coupling%moving_wall) call list_loose(mesh, solid, b, coupling%kind(b)%a(:, 1, :, :), coupling%closed_from, &
                                                 coupling%list(b))
+      flow%kept_awake(b) = coupling%list(b)%n > 0
+      if (flow%kept_awake(b)) call wake(flow, b)
     end do
   end subroutine immerse_solid
 

@@ -21,6 +21,7 @@ module records
   use report, only: report_figures, report_pace, start_pace, report_line, peak_memory
   use restart_files, only: newest_restart, forget_restarts
   use scene, only: scene_type
+  use sleeping_bricks, only: awake_share
   use snapshot_header, only: snapshot_clock
   use snapshots, only: snapshots_type, start_snapshots, put_flow_snapshot, put_solid_snapshot, put_peak_snapshot, &
     step_text
@@ -329,6 +330,7 @@ contains
     figures%cells = 0
     if (scene%flow_runs()) figures%cells = product(real(scene%mesh%cells, wp))*max(scene%clock%flow_steps, 1)
     if (scene%solid_runs()) figures%cells = figures%cells + sum(balance%solid%count)*scene%clock%solid_steps
+    if (scene%flow_runs()) figures%awake = awake_share(scene%flow)
     figures%wall = wall_seconds()
     call say(report_line(figures, records%pace))
     if (.not. abs(balance%energy) <= huge(1.0_wp)) call fatal('the energy of the scene is not finite at step '// &
