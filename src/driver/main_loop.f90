@@ -8,6 +8,7 @@ module main_loop
   use records, only: records_type, record_step, stop_if_asked
   use rigid_bodies, only: load_rigid
   use scene, only: scene_type
+  use solid_load, only: load_particles
   use solid_step, only: advance_solid
   use time_step, only: choose_time_step, flow_part
   implicit none
@@ -50,7 +51,7 @@ contains
     type(scene_type), intent(inout) :: scene
     call scene%watch%start('coupling')
     call immerse_solid(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
-    call find_wall_velocity(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
+    call find_wall_velocity(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling, scene%clock%dt)
     call scene%watch%stop('coupling')
   end subroutine meet_solid
 
@@ -98,13 +99,10 @@ contains
     scene%solid%time = scene%clock%time
     scene%solid%limiter = scene%clock%limiter
     dt = scene%clock%dt/scene%clock%solid_steps
+    if (scene%coupled) call load_particles(scene%mesh, scene%solid, scene%coupling%force, scene%clock%dt)
     if (scene%coupled .and. scene%solid%rigid_field > 0) call load_rigid(scene%mesh, scene%solid, scene%coupling%force)
     do part = 1, scene%clock%solid_steps
-      if (scene%coupled) then
-        call advance_solid(scene%mesh, scene%halo, scene%solid, dt, scene%coupling%force)
-      else
-        call advance_solid(scene%mesh, scene%halo, scene%solid, dt)
-      end if
+      call advance_solid(scene%mesh, scene%halo, scene%solid, dt)
     end do
     scene%clock%n_solid_steps = scene%clock%n_solid_steps + scene%clock%solid_steps
     call scene%watch%stop('solid')

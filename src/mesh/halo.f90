@@ -109,7 +109,7 @@ contains
   end subroutine list_gifts
 
   !> Ghost cells of all local blocks get the values of the neighbours' cells; those outside the domain are left alone.
-  !> n_var: variables 1..n_var travel; only_faces: leave out edges and corners; all blocks must be allocated.
+  !> n_var: variables 1..n_var travel; only_faces: leave out edges and corners. An unallocated block gives zeros and gets nothing.
   subroutine fill(mesh, halo, blocks, n_var, only_faces)
     type(mesh_type), intent(in) :: mesh
     type(halo_type), intent(inout) :: halo
@@ -383,6 +383,11 @@ contains
     integer :: i, j, k, v, n, d(3)
     n = to(1) - from(1) + 1
     d = first - from
+    if (.not. allocated(receiver)) return
+    if (.not. allocated(giver)) then
+      receiver(first(1):to(1) + d(1), :n_var, first(2):to(2) + d(2), first(3):to(3) + d(3)) = 0
+      return
+    end if
     do k = from(3), to(3)
       do j = from(2), to(2)
         if (n <= thin) then
@@ -438,6 +443,7 @@ contains
     real(wp), intent(in) :: buffer(:)
     integer :: i, j, k, v, n, at
     n = last(1) - first(1) + 1
+    if (.not. allocated(b%a)) return
     at = 0
     do k = first(3), last(3)
       do j = first(2), last(2)
