@@ -16,7 +16,8 @@ contains
 
   !> Sets kind (fluid_cell, interface_cell, inside_cell) in all cells and ghost layers from the number of particles in each cell.
   !> occupancy: one variable, its ghosts are set here; beyond the faces of the domain the solid is taken to go on as it is
-  !> at the face, so that a body cut by a symmetry plane is inside there.
+  !> at the face, so that a body cut by a symmetry plane is inside there. Where occupancy is unallocated kind stays as it is: all
+  !> fluid.
   subroutine classify_cells(mesh, halo, occupancy, kind)
     type(mesh_type), intent(in) :: mesh
     type(halo_type), intent(inout) :: halo
@@ -24,12 +25,13 @@ contains
     integer :: b
     call fill(mesh, halo, occupancy, 1, only_faces=.true.)
     do b = 1, mesh%n_local
+      if (.not. allocated(occupancy(b)%a)) cycle
       call mirror_ghosts(mesh, mesh%local(b), occupancy(b))
       call classify_brick(mesh%brick_cells, mesh%active, mesh%ghost, occupancy(b)%a(:, 1, :, :), kind(b)%a(:, 1, :, :))
     end do
     call fill(mesh, halo, kind, 1, only_faces=.true.)
     do b = 1, mesh%n_local
-      call mirror_ghosts(mesh, mesh%local(b), kind(b))
+      if (allocated(occupancy(b)%a)) call mirror_ghosts(mesh, mesh%local(b), kind(b))
     end do
   end subroutine classify_cells
 

@@ -15,6 +15,7 @@ module immersed_boundary
   use interface_cells, only: interface_list, list_interface, force_velocity, add_wall_impulse, &
     spread_force
   use kinds, only: wp
+  use light_walls, only: ease_light_walls
   use loose_particles, only: list_loose, drag_loose
   use mesh, only: mesh_type
   use mixture, only: cell_energies, close_cell
@@ -22,6 +23,7 @@ module immersed_boundary
   use sleeping_bricks, only: is_asleep, wake
   use solid_cover, only: cover_cells, smooth_part, wall_normals
   use solid_load, only: cell_velocity
+  use solid_reach, only: near_solid
   use solid_state, only: solid_type, frame_of
   implicit none
   private
@@ -43,6 +45,8 @@ module immersed_boundary
     logical :: active = .false.
     real(wp) :: reference_pressure = 0 !< pressure that the solid does not feel: its stress is counted from there
     real(wp) :: face(3) = 1 !< area of cell faces by direction
+    logical, allocatable :: near(:) !< local bricks that the solid concerns, now or in the step before; others have but kind
+    logical, allocatable :: near_now(:)
     type(block), allocatable :: occupancy(:) !< particles in each cell
     type(block), allocatable :: kind(:), kind_before(:) !< cell types now and in the step before
     type(interface_list), allocatable :: list(:) !< interface cells of each local brick
@@ -73,11 +77,9 @@ contains
     allocate (coupling%occupancy(mesh%n_local), coupling%kind(mesh%n_local), coupling%kind_before(mesh%n_local))
     allocate (coupling%list(mesh%n_local), coupling%force(mesh%n_local), coupling%solid_part(mesh%n_local))
     do b = 1, mesh%n_local
-      call allocate_cells(coupling%occupancy(b), mesh%brick_cells, mesh%ghost, 1, 0.0_wp)
-      if (moving_wall) call allocate_cells(coupling%solid_part(b), mesh%brick_cells, mesh%ghost, 1, 0.0_wp)
       call allocate_cells(coupling%kind(b), mesh%brick_cells, mesh%ghost, 1, fluid_cell)
-      call allocate_cells(coupling%kind_before(b), mesh%brick_cells, mesh%ghost, 1, fluid_cell)
     end do
+    allocate (coupling%near(mesh%n_local), coupling%near_now(mesh%n_local), source=.false.)
     n_books = booked_gas - 1 + flow%layout%n_conserved
     allocate (coupling%partial(n_books, mesh%n_local), coupling%books(n_books), source=0.0_wp)
   end subroutine start_coupling
@@ -90,7 +92,9 @@ contains
     integer :: b
     coupling%started = .true.
     do b = 1, mesh%n_local
-      call close_cells(mesh, coupling%kind(b), coupling%closed_from, flow%open(b), flow%wall_impulse(b))
+      coupling%near_now(b) = any(coupling%kind(b)%a > fluid_cell)
+      call close_cells(mesh, coupling%kind(b), coupling%closed_from, coupling%moving_wall, flow%open(b), flow%wall_impulse(b), &
+                       flow%wall(b))
     end do
   end subroutine restore_coupling
 
@@ -99,6 +103,31 @@ contains
     type(coupling_type), intent(inout) :: coupling
     deallocate (coupling%occupancy, coupling%kind, coupling%kind_before, coupling%list, coupling%force, coupling%solid_part)
   end subroutine release_coupling
+
+  !> Gives arrays to the bricks that the solid concerns and takes them from the others.
+  subroutine follow_solid(mesh, solid, coupling)
+    type(mesh_type), intent(in) :: mesh
+    type(solid_type), intent(in) :: solid
+    type(coupling_type), intent(inout) :: coupling
+    logical :: before(mesh%n_local)
+    integer :: b
+    before = coupling%near_now
+    coupling%near_now = near_solid(mesh, solid)
+    coupling%near = coupling%near_now .or. before
+    do b = 1, mesh%n_local
+      if (coupling%near(b) .eqv. allocated(coupling%occupancy(b)%a)) cycle
+      if (coupling%near(b)) then
+        call allocate_cells(coupling%occupancy(b), mesh%brick_cells, mesh%ghost, 1, 0.0_wp)
+        call allocate_cells(coupling%kind_before(b), mesh%brick_cells, mesh%ghost, 1, fluid_cell)
+        if (coupling%moving_wall) call allocate_cells(coupling%solid_part(b), mesh%brick_cells, mesh%ghost, 1, 0.0_wp)
+      else
+        deallocate (coupling%occupancy(b)%a, coupling%kind_before(b)%a)
+        if (coupling%moving_wall) deallocate (coupling%solid_part(b)%a)
+        coupling%list(b)%n = 0
+        coupling%list(b)%n_loose = 0
+      end if
+    end do
+  end subroutine follow_solid
 
   !> Finds the cell types from the particles, closes the cells inside, and lists the interface.
   subroutine immerse_solid(mesh, halo, solid, flow, coupling)
@@ -110,7 +139,9 @@ contains
     integer :: b
     logical :: opened(mesh%n_local)
     coupling%partial = 0
+    call follow_solid(mesh, solid, coupling)
     do b = 1, mesh%n_local
+      if (.not. coupling%near(b)) cycle
       if (coupling%moving_wall) then
         call cover_cells(mesh, solid, b, coupling%solid_part(b), coupling%occupancy(b))
       else
@@ -121,6 +152,8 @@ contains
     call classify_cells(mesh, halo, coupling%occupancy, coupling%kind)
     if (coupling%started) then
       do b = 1, mesh%n_local
+        opened(b) = .false.
+        if (.not. coupling%near(b)) cycle
         opened(b) = any(coupling%kind_before(b)%a > coupling%closed_from .and. &
                         coupling%kind(b)%a < coupling%closed_from)
         if (any(abs(coupling%kind_before(b)%a - coupling%kind(b)%a) > 0)) call wake(flow, b)
@@ -128,12 +161,14 @@ contains
       if (any_rank(any(opened))) call fill(mesh, halo, flow%w(:, flow%current), flow%layout%n_rows, only_faces=.true., &
                                            unread=.not. opened)
       do b = 1, mesh%n_local
-        if (.not. is_asleep(flow, b)) call answer_for_gas(mesh, flow, coupling, b)
+        if (coupling%near(b) .and. .not. is_asleep(flow, b)) call answer_for_gas(mesh, flow, coupling, b)
       end do
     end if
     coupling%started = .true.
     do b = 1, mesh%n_local
-      call close_cells(mesh, coupling%kind(b), coupling%closed_from, flow%open(b), flow%wall_impulse(b))
+      if (.not. coupling%near(b)) cycle
+      call close_cells(mesh, coupling%kind(b), coupling%closed_from, coupling%moving_wall, flow%open(b), flow%wall_impulse(b), &
+                       flow%wall(b))
       call list_interface(mesh%brick_cells, mesh%ghost, coupling%kind(b)%a(:, 1, :, :), interface_cell, &
                           merge(fluid_cell, inside_cell, coupling%moving_wall), coupling%list(b))
       if (coupling%moving_wall) call list_loose(mesh, solid, b, coupling%kind(b)%a(:, 1, :, :), coupling%closed_from, &
@@ -156,20 +191,24 @@ contains
   end subroutine copy_counts
 
   !> flow%open of one brick: 0 in closed cells, 1 elsewhere; unallocated where no cell or ghost is closed. Walls start from nil.
-  subroutine close_cells(mesh, kind, closed_from, open, wall_impulse)
+  !> moving: they have velocities and normals, to be set.
+  subroutine close_cells(mesh, kind, closed_from, moving, open, wall_impulse, wall)
     type(mesh_type), intent(in) :: mesh
     type(block), intent(in) :: kind
     real(wp), intent(in) :: closed_from
-    type(block), intent(inout) :: open, wall_impulse
+    logical, intent(in) :: moving
+    type(block), intent(inout) :: open, wall_impulse, wall
     if (any(kind%a > closed_from)) then
       if (.not. allocated(open%a)) then
         call allocate_cells(open, mesh%brick_cells, mesh%ghost, 1, 1.0_wp)
         call allocate_cells(wall_impulse, mesh%brick_cells, mesh%ghost, 3, 0.0_wp)
+        if (moving) call allocate_cells(wall, mesh%brick_cells, mesh%ghost, 6, 0.0_wp)
       end if
       open%a = merge(0.0_wp, 1.0_wp, kind%a > closed_from)
       wall_impulse%a = 0
     else if (allocated(open%a)) then
       deallocate (open%a, wall_impulse%a)
+      if (moving) deallocate (wall%a)
     end if
   end subroutine close_cells
 
@@ -252,12 +291,14 @@ contains
   end subroutine mean_of_neighbours
 
   !> Velocity of the solid in the interface cells, from the nodes (eq. 29); where walls move, the flow gets it with their normals.
-  subroutine find_wall_velocity(mesh, halo, solid, flow, coupling)
+  !> dt: of the step.
+  subroutine find_wall_velocity(mesh, halo, solid, flow, coupling, dt)
     type(mesh_type), intent(in) :: mesh
     type(halo_type), intent(inout) :: halo
     type(solid_type), intent(in) :: solid
     type(flow_type), intent(inout) :: flow
     type(coupling_type), intent(inout) :: coupling
+    real(wp), intent(in) :: dt
     type(cell_frame) :: frame
     integer :: b, c
     do b = 1, mesh%n_local
@@ -268,7 +309,10 @@ contains
         end do
       end associate
     end do
-    if (coupling%moving_wall) call set_walls(mesh, halo, flow, coupling)
+    if (.not. coupling%moving_wall) return
+    call ease_light_walls(mesh, halo, solid, flow, coupling%kind, coupling%closed_from, coupling%reference_pressure, &
+                          coupling%face, dt, coupling%list)
+    call set_walls(mesh, halo, flow, coupling)
   end subroutine find_wall_velocity
 
   !> In place of immerse_solid and find_wall_velocity where the solid has not moved since: a new step begins.
@@ -278,7 +322,7 @@ contains
     integer :: b
     coupling%partial = 0
     do b = 1, size(coupling%list)
-      coupling%list(b)%impulse = 0
+      if (allocated(coupling%list(b)%impulse)) coupling%list(b)%impulse = 0
       if (allocated(flow%wall_impulse(b)%a)) flow%wall_impulse(b)%a = 0
     end do
   end subroutine hold_solid
@@ -292,13 +336,14 @@ contains
     integer :: b, c
     call fill(mesh, halo, coupling%solid_part, 1)
     do b = 1, mesh%n_local
+      if (.not. coupling%near(b)) cycle
       call mirror_ghosts(mesh, mesh%local(b), coupling%solid_part(b))
       call smooth_part(mesh%brick_cells, mesh%active, mesh%ghost, coupling%solid_part(b)%a(:, 1, :, :))
     end do
     call fill(mesh, halo, coupling%solid_part, 1)
     do b = 1, mesh%n_local
+      if (.not. allocated(flow%wall(b)%a)) cycle
       call mirror_ghosts(mesh, mesh%local(b), coupling%solid_part(b))
-      if (.not. allocated(flow%wall(b)%a)) call allocate_cells(flow%wall(b), mesh%brick_cells, mesh%ghost, 6, 0.0_wp)
       do c = 1, coupling%list(b)%n
         associate (cell => coupling%list(b)%cell(:, c))
           flow%wall(b)%a(cell(1), 1:3, cell(2), cell(3)) = coupling%list(b)%velocity(:, c)
@@ -307,8 +352,8 @@ contains
     end do
     call fill(mesh, halo, flow%wall, 3, only_faces=.true.)
     do b = 1, mesh%n_local
-      call wall_normals(mesh%brick_cells, mesh%active, mesh%ghost, mesh%spacing, coupling%solid_part(b)%a(:, 1, :, :), &
-        coupling%kind(b)%a(:, 1, :, :) > coupling%closed_from, flow%wall(b)%a)
+      if (allocated(flow%wall(b)%a)) call wall_normals(mesh%brick_cells, mesh%active, mesh%ghost, mesh%spacing, &
+        coupling%solid_part(b)%a(:, 1, :, :), coupling%kind(b)%a(:, 1, :, :) > coupling%closed_from, flow%wall(b)%a)
     end do
   end subroutine set_walls
 

@@ -6,7 +6,7 @@ module deck_coupling
   public :: coupling_keys
 
   type, public :: coupling_group
-    character(word_length) :: method = 'lg_cfibm' !< or 'moving_wall', 'none'
+    character(word_length) :: method = 'moving_wall' !< or 'lg_cfibm', 'none'
     character(word_length) :: wall = 'slip' !< or 'no_slip'; of moving walls
     integer :: line = 0
   end type coupling_group
@@ -17,7 +17,7 @@ contains
     type(coupling_group), intent(inout), target :: group
     type(key_table), intent(inout) :: table
     call table%start('coupling', group%line)
-    call table%add('method', group%method, [character(word_length) :: 'lg_cfibm', 'moving_wall', 'none'])
+    call table%add('method', group%method, [character(word_length) :: 'moving_wall', 'lg_cfibm', 'none'])
     call table%add('wall', group%wall, [character(word_length) :: 'slip', 'no_slip'])
   end subroutine coupling_keys
 

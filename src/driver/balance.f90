@@ -23,6 +23,7 @@ module balance
     real(wp) :: energy = 0
     real(wp) :: momentum_scale = 0 !< sum of the sizes of all momenta and impulses
     real(wp) :: exchanged(3) = 0 !< momentum that the solid has from the flow
+    real(wp) :: undelivered(3) = 0 !< of it, what no particle got: nil to round-off
     real(wp) :: work_on_solid = 0 !< work of the flow on the solid
     real(wp) :: taken_from_flow = 0 !< kinetic energy that forcing took from the flow
     real(wp) :: uncovered_mass = 0, uncovered_energy = 0 !< gas added where cells opened less gas taken where they closed
@@ -67,7 +68,7 @@ contains
           balance%support_impulse(d) = sum(solid%books(book_impulse + d - 1:book_impulse + 3*n_supports - 1:3))
         end do
         balance%mass = balance%mass + sum(solid%mass) + solid%books(book_lost_mass)
-        balance%momentum = balance%momentum + sum(solid%momentum, dim=2) - balance%support_impulse &
+        balance%momentum = balance%momentum + sum(solid%momentum, dim=2) + solid%outside - balance%support_impulse &
                            + solid%books(book_lost_momentum:book_lost_momentum + 2) &
                            - solid%books(book_gravity_impulse:book_gravity_impulse + 2)
         balance%energy = balance%energy + sum(solid%kinetic + solid%internal + solid%potential) &
@@ -81,15 +82,14 @@ contains
       allocate (books(size(scene%coupling%books)))
       books = scene%coupling%books
       balance%exchanged = books(booked_impulse:booked_impulse + 2)
+      balance%undelivered = balance%exchanged - balance%solid%books(book_coupling_impulse:book_coupling_impulse + 2)
       balance%taken_from_flow = books(booked_kinetic)
       balance%work_on_solid = balance%solid%books(book_coupling_work)
       balance%uncovered_mass = sum(books(booked_gas:booked_gas + n - 1))
       balance%uncovered_energy = books(booked_gas + e - 1)
       balance%mass = balance%mass - balance%uncovered_mass
       balance%momentum = balance%momentum + books(booked_reference:booked_reference + 2) &
-                         - books(booked_gas + m - 1:booked_gas + m + 1) &
-                         + books(booked_impulse:booked_impulse + 2) &
-                         - balance%solid%books(book_coupling_impulse:book_coupling_impulse + 2)
+                         - books(booked_gas + m - 1:booked_gas + m + 1)
       balance%energy = balance%energy - balance%uncovered_energy + balance%taken_from_flow - balance%work_on_solid
       balance%momentum_scale = balance%momentum_scale + sum(abs(balance%exchanged))
     end if

@@ -66,6 +66,7 @@ contains
     end if
     if (scene%coupled) then
       call add_vector('coupling.impulse_on_solid', labels%momentum)
+      call add_vector('coupling.impulse_undelivered', labels%momentum)
       call add('coupling.work_on_solid', labels%energy)
       call add('coupling.energy_taken_from_flow', labels%energy)
       call add('coupling.mass_uncovered', labels%mass)
@@ -129,7 +130,8 @@ contains
         end if
       end associate
     end if
-    if (scene%coupled) row = [row, pack(balance%exchanged, scene%mesh%active), balance%work_on_solid, balance%taken_from_flow, &
+    if (scene%coupled) row = [row, pack(balance%exchanged, scene%mesh%active), &
+                              pack(balance%undelivered, scene%mesh%active), balance%work_on_solid, balance%taken_from_flow, &
                               balance%uncovered_mass, balance%uncovered_energy]
     row = [row, balance%mass, pack(balance%momentum, scene%mesh%active), balance%energy]
     call put_row(table, row)

@@ -8,6 +8,7 @@ module main_loop
   use records, only: records_type, record_step, stop_if_asked
   use rigid_bodies, only: load_rigid
   use scene, only: scene_type
+  use solid_load, only: load_particles
   use solid_step, only: advance_solid
   use stage_changes, only: review_stages
   use stages, only: note_load
@@ -59,7 +60,8 @@ contains
       call hold_solid(scene%flow, scene%coupling)
     else
       call immerse_solid(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
-      call find_wall_velocity(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
+      call find_wall_velocity(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling, &
+                              scene%clock%dt)
       scene%stages%solid_met = .true.
     end if
     call scene%watch%stop('coupling')
@@ -106,21 +108,18 @@ contains
   subroutine advance_structure(scene)
     type(scene_type), intent(inout) :: scene
     integer :: part
-    logical :: loaded
     real(wp) :: dt
     call scene%watch%start('solid')
     scene%solid%step = scene%clock%step
     scene%solid%time = scene%clock%time
     scene%solid%limiter = scene%clock%limiter
     dt = scene%clock%dt/scene%clock%solid_steps
-    loaded = scene%coupled .and. scene%flow_runs()
-    if (loaded .and. scene%solid%rigid_field > 0) call load_rigid(scene%mesh, scene%solid, scene%coupling%force)
+    if (scene%coupled .and. scene%flow_runs()) then
+      call load_particles(scene%mesh, scene%solid, scene%coupling%force, scene%clock%dt)
+      if (scene%solid%rigid_field > 0) call load_rigid(scene%mesh, scene%solid, scene%coupling%force)
+    end if
     do part = 1, scene%clock%solid_steps
-      if (loaded) then
-        call advance_solid(scene%mesh, scene%halo, scene%solid, dt, scene%coupling%force)
-      else
-        call advance_solid(scene%mesh, scene%halo, scene%solid, dt)
-      end if
+      call advance_solid(scene%mesh, scene%halo, scene%solid, dt)
     end do
     scene%clock%n_solid_steps = scene%clock%n_solid_steps + scene%clock%solid_steps
     call scene%watch%stop('solid')

@@ -66,7 +66,7 @@ contains
     call plan_halo(scene%mesh, scene%halo)
     if (scene%has_flow) call setup_flow(scene%mesh, scene%deck, scene%flow)
     if (scene%has_solid) then
-      call setup_solid(scene%mesh, scene%deck, scene%solid, pieces)
+      call setup_solid(scene%mesh, scene%deck, scene%solid, pieces, loaded=scene%coupled)
       call say_pieces(scene, pieces)
       call project_solid(scene%mesh, scene%halo, scene%solid)
     end if

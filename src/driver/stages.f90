@@ -10,7 +10,7 @@ module stages
   use mesh, only: mesh_type
   use particles, only: at_energy, at_mass, at_velocity
   use reductions, only: any_rank, reduce_sum
-  use solid_material, only: model_rigid
+  use rigid_bodies, only: all_fixed
   use solid_state, only: solid_type, book_lost_kinetic, book_lost_momentum
   use time_record, only: record_type
   implicit none
@@ -48,17 +48,6 @@ contains
     stages%solid_is_fixed = all_fixed(solid)
     stages%solid_waits = trim(plan%solid_start) == 'loaded' .and. .not. any_rank(moves_by_itself(solid))
   end subroutine start_stages
-
-  !> Every body is rigid and held.
-  pure logical function all_fixed(solid)
-    type(solid_type), intent(in) :: solid
-    integer :: i
-    all_fixed = all(solid%material%model == model_rigid)
-    if (.not. all_fixed) return
-    do i = 1, size(solid%rigid)
-      all_fixed = all_fixed .and. .not. (any(solid%rigid(i)%free) .or. any(solid%rigid(i)%free_axis))
-    end do
-  end function all_fixed
 
   !> Something of this rank's solid would move without a load: it has speed or strain, or gravity pulls.
   pure logical function moves_by_itself(solid) result(moves)

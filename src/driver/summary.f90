@@ -83,6 +83,8 @@ contains
     call json_put(file, 'mass', figures%drift(1))
     call json_put(file, 'momentum', figures%drift(2))
     call json_put(file, 'energy', figures%drift(3))
+    if (scene%coupled) call json_put(file, 'coupling_impulse', sum(abs(balance%undelivered))/ &
+      max(balance%momentum_scale, tiny(1.0_wp)))
     call json_end(file)
     if (scene%flow%burn_total > 0) then
       call json_begin(file, 'detonation')

@@ -129,6 +129,7 @@ contains
     real(wp) :: rate(3), weight(3), over_h(3)
     integer :: j, k, cell_y, face_y, cell_z, face_z, c, x_cells, x_faces, stride(3), reach, back(3), last
     logical :: radial, cure
+    logical :: row_open(1 - g(2):n(2) + g(2), 1 - g(3):n(3) + g(3)) !< no cell of the row, ghosts included, is closed
     c = layout%sound_speed_row
     ! along x whole vectors: the rows are padded
     x_cells = 4*((n(1) + 5)/4)
@@ -144,6 +145,14 @@ contains
     s%rate_low(1:n(1)) = merge(stage%dt*area(1:n(1))/volume, rate(1), radial)
     s%rate_high(1:n(1)) = merge(stage%dt*area(2:n(1) + 1)/volume, rate(1), radial)
     cure = stage%scheme%cure_shocks .and. count(stage%active) > 1
+    row_open = .true.
+    if (present(open)) then
+      do k = 1 - g(3), n(3) + g(3)
+        do j = 1 - g(2), n(2) + g(2)
+          row_open(j, k) = all_open(ld, 1, 1, open(1 - g(1), 1, j, k))
+        end do
+      end do
+    end if
     if (cure) call sense_plane(1)
     ! two of each: which one is old changes from row to row and from plane to plane
     cell_z = 1
@@ -254,8 +263,7 @@ contains
           reach, from(i - back(1), 1, j - back(2), k - back(3)), low, high, s%partial, s%fractions, s%force)
         if (.not. present(open)) return
         wide = merge(2, 1, stage%scheme%reconstruction == fifth_order)
-        if (all_open(n_cells, 2*wide + 1, merge(1, ld*merge(n(2) + 2*g(2), 1, direction == 3), direction == 1), &
-          open(i - wide*one(1), 1, j - wide*one(2), k - wide*one(3)))) return
+        if (all(row_open(j - wide*one(2):j + wide*one(2), k - wide*one(3):k + wide*one(3)))) return
         if (stage%scheme%reconstruction == fifth_order) then
           call reconstruct_muscl(third_order, n_cells, ld, nr, s1, eps2, from(i - one(1), 1, j - one(2), k - one(3)), &
             s%narrow_low, &
@@ -297,7 +305,7 @@ contains
         end if
       end if
       if (.not. present(open)) return
-      if (all_open(n_faces, 1, 1, open(1 - back, 1, jl, kl)) .and. all_open(n_faces, 1, 1, open(1, 1, jr, kr))) return
+      if (row_open(jl, kl) .and. row_open(jr, kr)) return
       if (present(wall)) then
         call move_row(n_faces, direction, jl, kl, jr, kr, back, flux)
       else
@@ -409,7 +417,7 @@ contains
       integer, intent(in) :: j, k
       type(row_report) :: row
       integer :: v
-      if (present(wall) .and. present(open)) then ! what passes walls is nothing to the cells behind
+      if (present(wall) .and. .not. row_open(j, k)) then ! what passes walls is nothing to the cells behind
         do v = 1, layout%n_fluxes
           where (open(1:n(1), 1, j, k) <= 0) s%d(1:n(1), v) = 0
         end do
@@ -424,7 +432,7 @@ contains
         call update_stored_energy(n(1), ld, eos(1), stage%part, stage%lowest, s%d, from(1, 1, j, k), start(1, 1, j, k), &
           new(1, 1, j, k), row%bad, s%row%relaxation)
       end if
-      if (present(open)) then
+      if (.not. row_open(j, k)) then
         do v = 1, layout%n_rows
           where (open(1:n(1), 1, j, k) <= 0) new(1:n(1), v, j, k) = from(1:n(1), v, j, k)
         end do

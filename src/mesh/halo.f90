@@ -110,7 +110,8 @@ contains
 
   !> Ghost cells of all local blocks get the values of the neighbours' cells; those outside the domain are left alone.
   !> n_var: variables 1..n_var travel; only_faces: leave out edges and corners; unread: bricks whose ghosts need not be filled.
-  !> All blocks must be allocated or share the numbers of another: these get numbers of their own where their ghosts would change.
+  !> A block that shares the numbers of another gets numbers of its own where its ghosts would change; one that has no numbers at all
+  !> gives zeros and gets nothing.
   subroutine fill(mesh, halo, blocks, n_var, only_faces, unread)
     type(mesh_type), intent(in) :: mesh
     type(halo_type), intent(inout) :: halo
@@ -415,6 +416,11 @@ contains
     integer :: i, j, k, v, n, d(3)
     n = to(1) - from(1) + 1
     d = first - from
+    if (.not. allocated(receiver)) return
+    if (.not. allocated(giver)) then
+      receiver(first(1):to(1) + d(1), :n_var, first(2):to(2) + d(2), first(3):to(3) + d(3)) = 0
+      return
+    end if
     do k = from(3), to(3)
       do j = from(2), to(2)
         if (n <= thin) then
@@ -515,6 +521,7 @@ contains
     real(wp), intent(in) :: buffer(:)
     integer :: i, j, k, v, n, at
     n = last(1) - first(1) + 1
+    if (.not. allocated(b%a)) return
     at = 0
     do k = first(3), last(3)
       do j = first(2), last(2)

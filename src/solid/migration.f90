@@ -7,9 +7,9 @@ module migration
   use parallel, only: world, my_rank => rank, n_ranks
   use particle_checks, only: in_reach, particle_error
   use particles, only: at_position, at_velocity, at_mass, at_energy, append_particle, note_moved, sort_particles, particle_block
+  use solid_material, only: model_rigid
   use solid_state, only: solid_type, cell_coordinate, face_free, book_lost_mass, book_lost_momentum, book_lost_kinetic, &
-    book_lost_internal, &
-    book_lost_count
+    book_lost_internal, book_lost_count, book_coupling_impulse
   implicit none
   private
   public :: route_particle, exchange_particles
@@ -58,7 +58,9 @@ contains
         if (mesh%periodic(d) .and. abs(step(d)) > 1) step(d) = step(d) - sign(mesh%bricks(d), step(d))
       end do
       if (outside) then
-        call book_loss(blk%f(index, :), solid%books(:, local))
+        call book_loss(blk%f(index, :), solid%material(set)%model == model_rigid, solid%books(:, local))
+        if (solid%at_force(set) > 0) call book_rest(blk%f(index, solid%at_force(set):solid%at_force(set) + 2), solid%load_left, &
+          solid%books(:, local))
         call note_moved(blk, index, 0)
         return
       end if
@@ -86,17 +88,30 @@ contains
     end if
   end subroutine wrap
 
-  subroutine book_loss(fields, books)
+  !> rigid: the momentum is still that of the particle's body.
+  subroutine book_loss(fields, rigid, books)
     real(wp), intent(in) :: fields(:)
+    logical, intent(in) :: rigid
     real(wp), intent(inout) :: books(:)
     associate (m => fields(at_mass), v => fields(at_velocity:at_velocity + 2))
       books(book_lost_mass) = books(book_lost_mass) + m
-      books(book_lost_momentum:book_lost_momentum + 2) = books(book_lost_momentum:book_lost_momentum + 2) + m*v
+      if (.not. rigid) books(book_lost_momentum:book_lost_momentum + 2) = books(book_lost_momentum:book_lost_momentum + 2) + m*v
       books(book_lost_kinetic) = books(book_lost_kinetic) + 0.5_wp*m*sum(v**2)
       books(book_lost_internal) = books(book_lost_internal) + fields(at_energy)
       books(book_lost_count) = books(book_lost_count) + 1
     end associate
   end subroutine book_loss
+
+  !> What is left of the impulse of the force on a particle leaves with it.
+  subroutine book_rest(force, load_left, books)
+    real(wp), intent(in) :: force(3), load_left
+    real(wp), intent(inout) :: books(:)
+    associate (lost => books(book_lost_momentum:book_lost_momentum + 2), &
+               given => books(book_coupling_impulse:book_coupling_impulse + 2))
+      lost = lost + load_left*force
+      given = given + load_left*force
+    end associate
+  end subroutine book_rest
 
   subroutine pack_particle(mesh, blk, set, target, cell, index, outbox)
     type(mesh_type), intent(in) :: mesh

@@ -16,7 +16,8 @@ module rigid_bodies
   use tensor_functions, only: control_point, functions_of, line_functions
   implicit none
   private
-  public :: start_rigid, push_rigid, load_rigid, turn_rigid, place_rigid, set_rigid_nodes, pack_rigid, unpack_rigid
+  public :: start_rigid, push_rigid, load_rigid, turn_rigid, place_rigid, set_rigid_nodes, pack_rigid, unpack_rigid, &
+    all_fixed
 
   integer, parameter :: n_stored = 28 !< numbers of a body in a restart file
 
@@ -311,5 +312,16 @@ contains
       end associate
     end do
   end subroutine unpack_rigid
+
+  !> Every body is rigid and held.
+  pure logical function all_fixed(solid)
+    type(solid_type), intent(in) :: solid
+    integer :: i
+    all_fixed = all(solid%material%model == model_rigid)
+    if (.not. all_fixed) return
+    do i = 1, size(solid%rigid)
+      all_fixed = all_fixed .and. .not. (any(solid%rigid(i)%free) .or. any(solid%rigid(i)%free_axis))
+    end do
+  end function all_fixed
 
 end module rigid_bodies

@@ -22,13 +22,15 @@ module solid_setup
 
 contains
 
-  !> Builds the solid; project_solid must follow. pieces: what was made of each shape, for the report.
+  !> Builds the solid; project_solid must follow. pieces: what was made of each shape, for the report; loaded: particles shall carry
+  !> forces from outside (default: no).
   !> Errors in the deck that only the mesh shows (a body that misses the domain) are fatal.
-  subroutine setup_solid(mesh, deck, solid, pieces)
+  subroutine setup_solid(mesh, deck, solid, pieces, loaded)
     type(mesh_type), intent(in) :: mesh
     type(deck_type), intent(in) :: deck
     type(solid_type), intent(out) :: solid
     type(piece_type), allocatable, intent(out) :: pieces(:)
+    logical, intent(in), optional :: loaded
     integer, allocatable :: used(:), field(:)
     integer :: i
     solid%present = size(deck%body) > 0
@@ -38,6 +40,7 @@ contains
     call number_bodies(deck, solid)
     call choose_contacts(deck, solid, field)
     call choose_materials(deck, field, solid, used)
+    if (present(loaded)) call claim_forces(loaded, solid)
     call claim_factors(deck, used, solid)
     call list_rigid(mesh, deck, used, solid)
     call set_supports(mesh, deck, solid)
@@ -142,7 +145,7 @@ contains
     end do
     solid%n_sets = size(used)
     allocate (solid%material(size(used)), solid%material_of_set(size(used)))
-    allocate (solid%at_affine(size(used)), source=0)
+    allocate (solid%at_affine(size(used)), solid%at_force(size(used)), source=0)
     do i = 1, size(used)
       m = findloc(used, used(i), dim=1)
       if (m < i) then
@@ -175,6 +178,17 @@ contains
     end subroutine use_material
 
   end subroutine choose_materials
+
+  !> Columns for forces from outside; rigid bodies feel theirs as a whole.
+  subroutine claim_forces(loaded, solid)
+    logical, intent(in) :: loaded
+    type(solid_type), intent(inout) :: solid
+    integer :: set
+    if (.not. loaded) return
+    do set = 1, solid%n_sets
+      if (solid%material(set)%model /= model_rigid) call claim_columns(solid%material(set), 3, solid%at_force(set))
+    end do
+  end subroutine claim_forces
 
   !> Bodies are numbered by their names in the order of the deck.
   subroutine number_bodies(deck, solid)

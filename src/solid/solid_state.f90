@@ -113,6 +113,8 @@ module solid_state
     real(wp) :: flip = 1 !< part of FLIP, the rest is PIC; 0 with APIC
     integer, allocatable :: at_affine(:) !< by set: first of 9 columns of the affine matrix dv_i/dx_j, row by row; 0 without APIC
     integer, allocatable :: at_load(:) !< by set: first column of the loads that its particles have felt; unallocated: not asked for
+    integer, allocatable :: at_force(:) !< by set: first of 3 columns of the force from outside on each particle; 0: no such columns
+    real(wp) :: load_left = 0 !< time over which those forces are still to act
     integer :: step = 0 !< of the scene, for messages
     real(wp) :: time = 0 !< likewise
     character(:), allocatable :: limiter !< what limits the time step, likewise

@@ -92,26 +92,22 @@ contains
     end do
   end subroutine scatter_brick
 
-  !> Advances the solid by dt.
-  !>
-  !> load: force on each cell of a brick (3 variables, any ghosts; unallocated: none), shared equally by the cell's particles of all
-  !> sets and held constant over the step; cells without particles must carry none. Its impulse and work go to the books.
-  subroutine advance_solid(mesh, halo, solid, dt, load)
+  !> Advances the solid by dt, under the forces of load_particles while their time lasts; impulse and work of these go to the books.
+  subroutine advance_solid(mesh, halo, solid, dt)
     type(mesh_type), intent(in) :: mesh
     type(halo_type), intent(inout) :: halo
     type(solid_type), intent(inout) :: solid
     real(wp), intent(in) :: dt
-    type(block), intent(in), optional :: load(:)
     type(loaded_cells) :: loaded(mesh%n_local)
     type(outbox_type) :: outbox
     integer :: b, set, field
+    logical :: has_load
+    has_load = solid%load_left > 0.5_wp*dt ! what round-off leaves of the time is none
     if (allocated(solid%pair)) call find_surfaces(mesh, halo, solid)
     if (solid%scheme == scheme_usf) call strain_first(mesh, solid, dt)
     do b = 1, mesh%n_local
       if (.not. allocated(solid%count(b)%a)) cycle
-      if (present(load)) then
-        if (allocated(load(b)%a)) call apply_load(mesh, solid, b, load(b), loaded(b))
-      end if
+      if (has_load) call apply_load(mesh, solid, b, loaded(b))
       call book_supports(solid, b, dt)
     end do
     if (solid%rigid_field > 0) call push_rigid(mesh, solid, dt)
@@ -135,6 +131,7 @@ contains
       call book_load(solid, b, dt, frame_of(mesh, solid%order, b), loaded(b))
       call change_velocities(mesh, solid, b)
     end do
+    if (has_load) solid%load_left = solid%load_left - dt
     call find_straining_velocity(mesh, halo, solid)
     if (solid%rigid_field > 0) call turn_rigid(mesh, solid, dt)
     do b = 1, mesh%n_local

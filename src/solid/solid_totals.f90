@@ -4,7 +4,8 @@ module solid_totals
   use mesh, only: mesh_type
   use particles, only: at_position, at_velocity, at_mass, at_energy, at_damage, at_plastic_work, at_plastic_strain
   use reductions, only: reduce_sum
-  use solid_state, only: solid_type
+  use solid_material, only: model_rigid
+  use solid_state, only: solid_type, book_lost_count
   implicit none
   private
   public :: sum_solid
@@ -14,6 +15,7 @@ module solid_totals
     real(wp), allocatable :: count(:) !< particles
     real(wp), allocatable :: mass(:)
     real(wp), allocatable :: momentum(:, :) !< (3, set)
+    real(wp) :: outside(3) = 0 !< momentum of the parts of rigid bodies that have left the domain, which move on with the rest
     real(wp), allocatable :: kinetic(:)
     real(wp), allocatable :: internal(:)
     real(wp), allocatable :: potential(:) !< energy in the field of gravity, zero at the origin
@@ -60,6 +62,13 @@ contains
     totals%momentum(2, :) = all(9:n_sums*n:n_sums)
     totals%momentum(3, :) = all(10:n_sums*n:n_sums)
     totals%books = all(n_sums*n + 1:)
+    if (.not. totals%books(book_lost_count) > 0) return
+    do b = 1, size(solid%rigid)
+      totals%outside = totals%outside + solid%rigid(b)%mass*solid%rigid(b)%velocity
+    end do
+    do set = 1, n
+      if (solid%material(set)%model == model_rigid) totals%outside = totals%outside - totals%momentum(:, set)
+    end do
   end function sum_solid
 
   pure subroutine sum_block(gravity, failure_damage, n, capacity, n_field, f, sums)

@@ -9,7 +9,7 @@ module tensor_scatter
   use tensor_functions, only: functions_of, make_lanes, tensor_weights, tensor_bumps, line_functions, lane_functions, most_lanes
   implicit none
   private
-  public :: scatter_by_tensor, add_momentum_by_tensor, add_row, sum_tensor
+  public :: scatter_by_tensor, add_momentum_by_tensor, add_row, scatter_columns
 
   integer, parameter :: sxx = at_stress, syy = at_stress + 1, szz = at_stress + 2
   integer, parameter :: syz = at_stress + 3, sxz = at_stress + 4, sxy = at_stress + 5
@@ -261,31 +261,37 @@ contains
     end do
   end subroutine sum_flux
 
-  !> Sum of each node's function over the particles of one cell, for loads. total(function along x, y, z).
-  pure subroutine sum_tensor(frame, cell, capacity, n_field, f, first, last, total)
+  !> Three columns of the particles first..last of one cell, from `at` on, at the nodes of the cell. total(function along x, y, z,
+  !> column), added to.
+  pure subroutine scatter_columns(frame, cell, at, capacity, n_field, f, first, last, total)
     type(cell_frame), intent(in) :: frame
-    integer, intent(in) :: cell(3), capacity, n_field, first, last
+    integer, intent(in) :: cell(3), at, capacity, n_field, first, last
     real(wp), intent(in) :: f(capacity, n_field)
-    real(wp), intent(inout) :: total(3, 3, 3)
-    type(line_functions) :: line(3)
-    real(wp) :: t(1), bump(piece, 2), slope(piece, 2), w(3, 3)
-    integer :: q, d, a, b, c
-    do d = 1, 3
-      line(d) = functions_of(frame, d, cell(d))
+    real(wp), intent(inout) :: total(3, 3, 3, 3)
+    type(line_functions) :: x, y, z
+    type(lane_functions) :: lanes
+    real(wp) :: w(piece, 3), t(piece), bump(piece, 2, 2), unused(piece, 3), one(piece), row(most_lanes, 4, 3)
+    integer :: start, n, a, b, c
+    x = functions_of(frame, 1, cell(1))
+    y = functions_of(frame, 2, cell(2))
+    z = functions_of(frame, 3, cell(3))
+    call make_lanes(y, z, lanes)
+    one = 1
+    row = 0
+    do start = first, last, piece
+      n = min(piece, last + 1 - start)
+      call tensor_weights(x, n, f(start, at_position), w, unused)
+      call tensor_bumps(y, n, f(start, at_position + 1), t, bump(:, :, 1), unused(:, 1:2))
+      call tensor_bumps(z, n, f(start, at_position + 2), t, bump(:, :, 2), unused(:, 1:2))
+      call sum_momentum(n, x%n, lanes%y, lanes%z, w, bump, one, f(start, at), f(start, at + 1), f(start, at + 2), row)
     end do
-    do q = first, last
-      do d = 1, 3
-        call tensor_bumps(line(d), 1, f(q, at_position + d - 1), t, bump, slope)
-        w(:, d) = line(d)%p(0, :) + (line(d)%p(1, :)*bump(1, 1) + line(d)%p(2, :)*bump(1, 2))
-      end do
-      do c = 1, 3
-        do b = 1, 3
-          do a = 1, 3
-            total(a, b, c) = total(a, b, c) + (w(a, 1)*w(b, 2))*w(c, 3)
-          end do
+    do c = 1, z%n
+      do b = 1, y%n
+        do a = 1, x%n
+          total(a, b, c, :) = total(a, b, c, :) + row(b + y%n*(c - 1), 2:4, a)
         end do
       end do
     end do
-  end subroutine sum_tensor
+  end subroutine scatter_columns
 
 end module tensor_scatter

@@ -118,18 +118,19 @@ contains
     deck%body = [deck%body, group]
   end subroutine add_box
 
-  !> Mesh, particles and first projection of the scene's deck. brick: cells of a brick, 0 to have it chosen.
-  subroutine start_scene(scene, cells, lower, upper, brick, periodic)
+  !> Mesh, particles and first projection of the scene's deck. brick: cells of a brick, 0 to have it chosen; loaded: particles
+  !> carry forces from outside.
+  subroutine start_scene(scene, cells, lower, upper, brick, periodic, loaded)
     type(solid_scene), intent(inout) :: scene
     integer, intent(in) :: cells(3), brick(3)
     real(wp), intent(in) :: lower(3), upper(3)
-    logical, intent(in), optional :: periodic(3)
+    logical, intent(in), optional :: periodic(3), loaded
     logical :: wraps(3)
     wraps = .false.
     if (present(periodic)) wraps = periodic
     call build_mesh(scene%mesh, cells, lower, upper, brick, wraps, 2)
     call plan_halo(scene%mesh, scene%halo)
-    call setup_solid(scene%mesh, scene%deck, scene%solid, scene%pieces)
+    call setup_solid(scene%mesh, scene%deck, scene%solid, scene%pieces, loaded)
     call project_solid(scene%mesh, scene%halo, scene%solid)
   end subroutine start_scene
 

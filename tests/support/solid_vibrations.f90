@@ -7,6 +7,7 @@ module solid_vibrations
   use particles, only: at_position, at_velocity, at_mass, at_volume, at_stress
   use solid_numerics, only: numerics_type, choose_numerics
   use solid_scenes, only: solid_scene, empty_deck, metal, add_box, start_scene
+  use solid_load, only: load_particles
   use solid_step, only: advance_solid, project_solid
   use solid_time_step, only: solid_limit, solid_limit_type
   use solid_totals, only: solid_totals_type, sum_solid
@@ -198,7 +199,7 @@ contains
       spacing=0.5_wp/cells)]
     scene%deck%hole = [hole_group(body='a', shape='sphere', center=[0.0_wp, 0.0_wp, 0.5_wp], radius=1.0_wp)]
     call start_scene(scene, [2*cells + 2, 2*cells + 2, 1], [0.0_wp, 0.0_wp, 0.0_wp], &
-      [2 + 2.0_wp/cells, 2 + 2.0_wp/cells, 1.0_wp], [2*cells + 2, 2*cells + 2, 1])
+      [2 + 2.0_wp/cells, 2 + 2.0_wp/cells, 1.0_wp], [2*cells + 2, 2*cells + 2, 1], loaded=.true.)
     allocate (start(2, scene%solid%n_particles))
     volume = 0
     allocate (scale(scene%mesh%n_local))
@@ -231,7 +232,8 @@ contains
       end do
       call project_solid(scene%mesh, scene%halo, scene%solid)
       load(1)%a = min(time*c/10, 1.0_wp)*scale(1)%a
-      call advance_solid(scene%mesh, scene%halo, scene%solid, limit%dt, load)
+      call load_particles(scene%mesh, scene%solid, load, limit%dt)
+      call advance_solid(scene%mesh, scene%halo, scene%solid, limit%dt)
       time = time + limit%dt
     end do
     largest = [lame(1 + layer, force), hoop(1 + layer, force)]
