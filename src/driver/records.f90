@@ -1,6 +1,7 @@
 !> What a run writes while it goes: gauges, history, snapshots, peak maps, restart files, report lines; and when it is to stop.
 module records
   use balance, only: balance_type, take_balance
+  use blast_memory, only: remember_blasts
   use body_loads, only: sum_loads
   use checkpoint, only: save_run, resume_run
   use csv_series, only: series, close_series, flush_series
@@ -95,6 +96,7 @@ contains
         else
           call place_gauges(records%gauges, scene%mesh)
         end if
+        if (allocated(scene%blast)) call remember_blasts(scene%mesh, scene%blast, records%peaks, records%gauges)
         call open_gauges(records%gauges, records%folder)
         call open_history(records%history, records%folder//'/history.csv', scene, records%labels)
         if (scene%loads%active) then
