@@ -10,7 +10,7 @@ module radial_shells
 
   integer, parameter :: halvings = 2 !< of every box
   integer, parameter :: most_halvings = 7 !< near the centre
-  real(wp), parameter :: curved = 0.35_wp !< half a diagonal over the distance from which on a box is halved again
+  real(wp), parameter :: curved = 0.15_wp !< half a diagonal over the distance from which on a box is halved again
 
 contains
 
