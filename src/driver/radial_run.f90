@@ -23,10 +23,10 @@ module radial_run
   public :: run_radially, radial_deck
 
   real(wp), parameter :: noticeable = 1e-6_wp !< part of pressure and sound speed that counts as the front of the wave
-  real(wp), parameter :: slightest = 1e-12_wp !< what counts as still, above round-off
+  real(wp), parameter :: slightest = 1e-9_wp !< what is above the noise of relaxation in still surroundings
   integer, parameter :: brick = 128 !< cells
   integer, parameter :: first_radii = 4 !< charge radii that the mesh reaches over at first
-  integer, parameter :: margin = 24 !< cells that must be still beyond the wave
+  integer, parameter :: margin = 48 !< cells before the front that hold its foot
 
   !> The run and what its cells have felt.
   type :: radial_run_type
@@ -62,7 +62,7 @@ contains
         if (scene%clock%time >= deck%run%end_time) call fatal('charge '//str(c)//': at the end of the run, '// &
           str(scene%clock%time)//', its wave has come to '//str(front)//' only, not to '//str(stop)// &
           ', where it is to enter the scene', exit_bad_input)
-        if (disturbed > (cells - margin)*scene%mesh%spacing(1)) then
+        if (front > (cells - margin)*scene%mesh%spacing(1)) then
           call grow(run, deck, c, 2*cells)
           cells = 2*cells
         end if
@@ -150,7 +150,7 @@ contains
     end associate
   end subroutine measure
 
-  !> front: radius that the wave has come to; disturbed: radius beyond which all is as at the start but for round-off.
+  !> front: radius that the wave has come to; disturbed: radius beyond which all is still but for noise.
   subroutine find_wave(run, front, disturbed)
     type(radial_run_type), intent(in) :: run
     real(wp), intent(out) :: front, disturbed
@@ -213,7 +213,7 @@ contains
       profile%front = front
       totals = sum_flow(mesh, flow)
       profile%afterburnt = run%afterburnt + totals%afterburnt
-      n = min(nint(disturbed/mesh%spacing(1)) + 1, mesh%cells(1))
+      n = min(nint(min(disturbed/mesh%spacing(1), front/mesh%spacing(1) + margin - 1)) + 1, mesh%cells(1))
       profile%state = columns_of(mesh, flow%w(:, flow%current), flow%layout%n_rows)
       profile%state = profile%state(:, :n)
       allocate (profile%felt(n_felt, n))
