@@ -10,10 +10,11 @@ module radial_run
   use log, only: be_quiet
   use main_loop, only: advance_scene
   use mesh, only: mesh_type
-  use mpi_f08, only: MPI_Allgatherv, MPI_DOUBLE_PRECISION
-  use parallel, only: n_ranks, world
+  use mpi_f08, only: MPI_Allgatherv, MPI_Allreduce, MPI_DOUBLE_PRECISION, MPI_IN_PLACE, MPI_SUM
+  use parallel, only: is_root, n_ranks, world
   use peak_maps, only: peak_maps_type, start_peaks, update_peaks
-  use radial_profile, only: radial_profile_type, n_felt, felt_arrival, felt_whole_impulse
+  use radial_profile, only: radial_profile_type, n_felt, felt_arrival, felt_whole_impulse, n_seen, seen_pressure, seen_density, &
+    seen_velocity
   use reductions, only: reduce_max
   use scene, only: scene_type
   use setup, only: lay_out_scene, make_scene
@@ -34,6 +35,10 @@ module radial_run
     type(peak_maps_type) :: peaks
     type(block), allocatable :: impulse(:) !< integral of the overpressure of each cell, and the overpressure at the last step
     real(wp), allocatable :: still(:) !< state of the surroundings
+    real(wp), allocatable :: gauge(:) !< radii
+    real(wp), allocatable :: seen(:, :, :) !< (seen_*, gauge, step + 1): this rank's part
+    real(wp), allocatable :: seen_at(:)
+    integer :: n_seen_at = 0
     real(wp) :: afterburnt = 0 !< before the mesh grew last
   end type radial_run_type
 
@@ -54,6 +59,8 @@ contains
     call be_quiet(was=was_quiet)
     cells = brick*ceiling(real(first_radii*cells_in_charge(deck, c), wp)/brick)
     call start_run(run, deck, c, cells)
+    run%gauge = gauges_of(deck, c)
+    call look(run)
     do
       associate (scene => run%scene, flow => run%scene%flow)
         call find_wave(run, front, disturbed)
@@ -68,6 +75,7 @@ contains
         end if
         call advance_scene(scene, min(latest, deck%run%end_time))
         call measure(run)
+        call look(run)
       end associate
     end do
     profile = profile_of(run, front, disturbed)
@@ -150,6 +158,73 @@ contains
     end associate
   end subroutine measure
 
+  !> Distances of the flow gauges from charge c.
+  pure function gauges_of(deck, c) result(radius)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: c
+    real(wp), allocatable :: radius(:)
+    integer :: g
+    allocate (radius(0))
+    do g = 1, size(deck%gauge)
+      if (deck%gauge(g)%kind == 'flow') radius = [radius, norm2(merge(deck%gauge(g)%position - deck%charge(c)%center, 0.0_wp, &
+                                                                       deck%mesh%active()))]
+    end do
+  end function gauges_of
+
+  !> Takes a row of the history at the gauges: linear between the middles of two cells, of which each rank adds its own.
+  subroutine look(run)
+    type(radial_run_type), intent(inout) :: run
+    real(wp), allocatable :: more(:, :, :)
+    real(wp) :: place, part
+    integer :: g, n, i
+    if (.not. allocated(run%seen)) allocate (run%seen(n_seen, size(run%gauge), 64), run%seen_at(64))
+    n = run%n_seen_at + 1
+    if (n > size(run%seen_at)) then
+      allocate (more(n_seen, size(run%gauge), 2*n))
+      more(:, :, :n - 1) = run%seen
+      call move_alloc(more, run%seen)
+      run%seen_at = [run%seen_at, run%seen_at, 0.0_wp, 0.0_wp]
+    end if
+    run%n_seen_at = n
+    run%seen_at(n) = run%scene%clock%time
+    run%seen(:, :, n) = 0
+    associate (mesh => run%scene%mesh)
+      do g = 1, size(run%gauge)
+        place = max(run%gauge(g)/mesh%spacing(1) + 0.5_wp, 1.0_wp)
+        if (.not. place < mesh%cells(1)) then
+          if (is_root()) run%seen(:, g, n) = run%still(columns_seen(run))
+          cycle
+        end if
+        i = int(place)
+        part = place - i
+        call add(i, 1 - part)
+        call add(i + 1, part)
+      end do
+    end associate
+  contains
+    subroutine add(cell, weight)
+      integer, intent(in) :: cell
+      real(wp), intent(in) :: weight
+      integer :: b, i
+      associate (mesh => run%scene%mesh, flow => run%scene%flow)
+        do b = 1, mesh%n_local
+          i = cell - mesh%brick(mesh%local(b))%location(1)*mesh%brick_cells(1)
+          if (i < 1 .or. i > mesh%brick_cells(1)) cycle
+          run%seen(:, g, n) = run%seen(:, g, n) + weight*flow%w(b, flow%current)%a(i, columns_seen(run), 1, 1)
+        end do
+      end associate
+    end subroutine add
+  end subroutine look
+
+  !> Rows of the flow that a history has.
+  pure function columns_seen(run) result(columns)
+    type(radial_run_type), intent(in) :: run
+    integer :: columns(n_seen)
+    columns(seen_pressure) = run%scene%flow%layout%pressure()
+    columns(seen_density) = run%scene%flow%layout%density()
+    columns(seen_velocity) = run%scene%flow%layout%velocity(1)
+  end function columns_seen
+
   !> front: radius that the wave has come to; disturbed: radius beyond which all is still but for noise.
   subroutine find_wave(run, front, disturbed)
     type(radial_run_type), intent(in) :: run
@@ -195,6 +270,10 @@ contains
       new%clock = old%clock
       new%flow%time = old%flow%time
       longer%afterburnt = run%afterburnt + totals%afterburnt
+      longer%gauge = run%gauge
+      longer%n_seen_at = run%n_seen_at
+      call move_alloc(run%seen, longer%seen)
+      call move_alloc(run%seen_at, longer%seen_at)
     end associate
     run = longer
   end subroutine grow
@@ -222,6 +301,10 @@ contains
       impulse = columns_of(mesh, run%impulse, 1)
       profile%felt(felt_whole_impulse, :) = impulse(1, :n)
     end associate
+    profile%gauge = run%gauge
+    profile%seen_at = run%seen_at(:run%n_seen_at)
+    profile%seen = run%seen(:, :, :run%n_seen_at)
+    call MPI_Allreduce(MPI_IN_PLACE, profile%seen, size(profile%seen), MPI_DOUBLE_PRECISION, MPI_SUM, world)
   end function profile_of
 
   !> All columns of a field along the radius, variables 1..n_var, on every rank: bricks of ranks follow each other along it.

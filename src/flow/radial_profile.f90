@@ -7,6 +7,7 @@ module radial_profile
   integer, parameter, public :: felt_peak = 1, felt_impulse = 2, felt_arrival = 3 !< as the peak maps have them
   integer, parameter, public :: felt_whole_impulse = 4 !< integral of the overpressure, negative phase and all, as gauges have it
   integer, parameter, public :: n_felt = 4
+  integer, parameter, public :: seen_pressure = 1, seen_density = 2, seen_velocity = 3, n_seen = 3 !< along the radius
 
   type, public :: radial_profile_type
     integer :: radial_power = 2 !< 2: shells around a point, 1: around an axis
@@ -16,6 +17,9 @@ module radial_profile
     real(wp) :: afterburnt = 0 !< energy that afterburn has released
     real(wp), allocatable :: state(:, :) !< (row of the flow, shell), from the centre to where nothing has come yet
     real(wp), allocatable :: felt(:, :) !< (felt_*, shell)
+    real(wp), allocatable :: gauge(:) !< radii at which a history was taken
+    real(wp), allocatable :: seen_at(:) !< times of it
+    real(wp), allocatable :: seen(:, :, :) !< (seen_*, gauge, time)
   contains
     procedure :: felt_at
   end type radial_profile_type

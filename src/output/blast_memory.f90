@@ -1,13 +1,15 @@
 !> What a place has felt of a blast before that entered the scene: peak maps and gauges go on from there.
 module blast_memory
-  use gauges, only: gauges_type
+  use gauges, only: gauges_type, note_gauges
   use kinds, only: wp
   use mesh, only: mesh_type
   use peak_maps, only: peak_maps_type, n_peaks
-  use radial_profile, only: blast_type, felt_whole_impulse, n_felt
+  use radial_profile, only: blast_type, felt_whole_impulse, n_felt, seen_pressure, seen_density, seen_velocity
   implicit none
   private
-  public :: remember_blasts
+  public :: remember_blasts, write_history
+
+  real(wp), parameter :: same_place = 1e-9_wp !< of a radius
 
 contains
 
@@ -55,5 +57,37 @@ contains
       reached = radius(blast, x) < blast%profile%front
     end function reached
   end subroutine remember_blasts
+
+  !> Writes the rows of the gauges up to the time at which a blast entered the scene, from its run; to be called before
+  !> remember_blasts. None where several blasts entered, or where one comes from a file that has other gauges.
+  subroutine write_history(mesh, blast, gauges)
+    type(mesh_type), intent(in) :: mesh
+    type(blast_type), intent(in) :: blast(:)
+    type(gauges_type), intent(inout) :: gauges
+    integer :: place(gauges%flow%n), i, g, f
+    real(wp) :: away(3, gauges%flow%n), flow(5, gauges%flow%n), radius, dt
+    if (gauges%n == 0 .or. size(blast) > 1) return
+    f = 0
+    associate (profile => blast(1)%profile)
+      do g = 1, gauges%n
+        if (.not. gauges%in_flow(g)) cycle
+        f = f + 1
+        away(:, f) = merge(gauges%position(:, g) - blast(1)%center, 0.0_wp, mesh%active)
+        radius = norm2(away(:, f))
+        away(:, f) = away(:, f)/max(radius, tiny(1.0_wp))
+        place(f) = findloc(abs(profile%gauge - radius) <= same_place*radius, .true., dim=1)
+      end do
+      if (any(place == 0)) return
+      dt = 0
+      do i = 1, size(profile%seen_at) - 1 ! the last is the first of the scene
+        if (i > 1) dt = profile%seen_at(i) - profile%seen_at(i - 1)
+        do f = 1, size(place)
+          flow(1:2, f) = profile%seen([seen_pressure, seen_density], place(f), i)
+          flow(3:, f) = away(:, f)*profile%seen(seen_velocity, place(f), i)
+        end do
+        call note_gauges(gauges, mesh, profile%seen_at(i), dt, flow)
+      end do
+    end associate
+  end subroutine write_history
 
 end module blast_memory

@@ -8,7 +8,7 @@ module start_files
   use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: wp
   use parallel, only: is_root
-  use radial_profile, only: radial_profile_type, n_felt
+  use radial_profile, only: radial_profile_type, n_felt, n_seen
   use reductions, only: any_rank
   implicit none
   private
@@ -40,6 +40,12 @@ contains
     call put_attribute(file, '/', 'figures', [profile%thickness, profile%time, profile%front, profile%afterburnt, stop])
     call put_whole(file, 'state', reshape(profile%state, [size(profile%state)]), size(profile%state, 1))
     call put_whole(file, 'felt', reshape(profile%felt, [size(profile%felt)]), n_felt)
+    call put_attribute(file, '/', 'gauges', [size(profile%gauge)])
+    call put_whole(file, 'seen_at', profile%seen_at)
+    if (size(profile%gauge) > 0) then
+      call put_whole(file, 'gauge', profile%gauge)
+      call put_whole(file, 'seen', reshape(profile%seen, [size(profile%seen)]), n_seen*size(profile%gauge))
+    end if
     call close_file(file)
     call publish_file(name//'.part', name)
   end subroutine write_start_file
@@ -78,6 +84,7 @@ contains
     allocate (values(n_felt*n))
     call get_slab(file, 'felt', values, 0_int64, n_felt)
     profile%felt = reshape(values, [n_felt, n])
+    call read_history(file, profile)
     call close_file(file)
   contains
     subroutine refuse(reason)
@@ -85,5 +92,21 @@ contains
       call fatal('start_file '''//name//''' '//reason, exit_bad_input)
     end subroutine refuse
   end subroutine read_start_file
+
+  subroutine read_history(file, profile)
+    type(hdf5_file), intent(inout) :: file
+    type(radial_profile_type), intent(inout) :: profile
+    real(wp), allocatable :: values(:)
+    integer :: gauges(1), n
+    call get_attribute(file, '/', 'gauges', gauges)
+    n = int(n_columns(file, 'seen_at'))
+    allocate (profile%gauge(gauges(1)), profile%seen_at(n), values(n_seen*gauges(1)*n))
+    call get_slab(file, 'seen_at', profile%seen_at, 0_int64)
+    if (gauges(1) > 0) then
+      call get_slab(file, 'gauge', profile%gauge, 0_int64)
+      call get_slab(file, 'seen', values, 0_int64, n_seen*gauges(1))
+    end if
+    profile%seen = reshape(values, [n_seen, gauges(1), n])
+  end subroutine read_history
 
 end module start_files
