@@ -19,12 +19,14 @@ module immersed_boundary
   use mesh, only: mesh_type
   use mixture, only: cell_energies, close_cell
   use reductions, only: any_rank, reduce_sum
+  use sleeping_bricks, only: is_asleep, wake
   use solid_cover, only: cover_cells, smooth_part, wall_normals
   use solid_load, only: cell_velocity
   use solid_state, only: solid_type, frame_of
   implicit none
   private
-  public :: start_coupling, restore_coupling, immerse_solid, find_wall_velocity, force_first_state, force_stage, collect_force
+  public :: start_coupling, restore_coupling, release_coupling, immerse_solid, hold_solid, find_wall_velocity, force_first_state, &
+    force_stage, collect_force
 
   integer, parameter, public :: booked_impulse = 1 !< first of 3: momentum given to the solid
   integer, parameter, public :: booked_reference = 4 !< first of 3: impulse of the reference pressure on closed faces
@@ -92,6 +94,12 @@ contains
     end do
   end subroutine restore_coupling
 
+  !> Gives the memory of a coupling back that is needed no more; the books stay.
+  subroutine release_coupling(coupling)
+    type(coupling_type), intent(inout) :: coupling
+    deallocate (coupling%occupancy, coupling%kind, coupling%kind_before, coupling%list, coupling%force, coupling%solid_part)
+  end subroutine release_coupling
+
   !> Finds the cell types from the particles, closes the cells inside, and lists the interface.
   subroutine immerse_solid(mesh, halo, solid, flow, coupling)
     type(mesh_type), intent(in) :: mesh
@@ -100,7 +108,7 @@ contains
     type(flow_type), intent(inout) :: flow
     type(coupling_type), intent(inout) :: coupling
     integer :: b
-    logical :: opened
+    logical :: opened(mesh%n_local)
     coupling%partial = 0
     do b = 1, mesh%n_local
       if (coupling%moving_wall) then
@@ -112,14 +120,15 @@ contains
     end do
     call classify_cells(mesh, halo, coupling%occupancy, coupling%kind)
     if (coupling%started) then
-      opened = .false.
       do b = 1, mesh%n_local
-        opened = opened .or. any(coupling%kind_before(b)%a > coupling%closed_from .and. &
-                                 coupling%kind(b)%a < coupling%closed_from)
+        opened(b) = any(coupling%kind_before(b)%a > coupling%closed_from .and. &
+                        coupling%kind(b)%a < coupling%closed_from)
+        if (any(abs(coupling%kind_before(b)%a - coupling%kind(b)%a) > 0)) call wake(flow, b)
       end do
-      if (any_rank(opened)) call fill(mesh, halo, flow%w(:, flow%current), flow%layout%n_rows, only_faces=.true.)
+      if (any_rank(any(opened))) call fill(mesh, halo, flow%w(:, flow%current), flow%layout%n_rows, only_faces=.true., &
+                                           unread=.not. opened)
       do b = 1, mesh%n_local
-        call answer_for_gas(mesh, flow, coupling, b)
+        if (.not. is_asleep(flow, b)) call answer_for_gas(mesh, flow, coupling, b)
       end do
     end if
     coupling%started = .true.
@@ -129,6 +138,8 @@ contains
                           merge(fluid_cell, inside_cell, coupling%moving_wall), coupling%list(b))
       if (coupling%moving_wall) call list_loose(mesh, solid, b, coupling%kind(b)%a(:, 1, :, :), coupling%closed_from, &
                                                 coupling%list(b))
+      flow%kept_awake(b) = coupling%list(b)%n > 0
+      if (flow%kept_awake(b)) call wake(flow, b)
     end do
   end subroutine immerse_solid
 
@@ -259,6 +270,18 @@ contains
     end do
     if (coupling%moving_wall) call set_walls(mesh, halo, flow, coupling)
   end subroutine find_wall_velocity
+
+  !> In place of immerse_solid and find_wall_velocity where the solid has not moved since: a new step begins.
+  subroutine hold_solid(flow, coupling)
+    type(flow_type), intent(inout) :: flow
+    type(coupling_type), intent(inout) :: coupling
+    integer :: b
+    coupling%partial = 0
+    do b = 1, size(coupling%list)
+      coupling%list(b)%impulse = 0
+      if (allocated(flow%wall_impulse(b)%a)) flow%wall_impulse(b)%a = 0
+    end do
+  end subroutine hold_solid
 
   !> Velocities and normals of walls that move, for the flow.
   subroutine set_walls(mesh, halo, flow, coupling)

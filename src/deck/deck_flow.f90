@@ -24,6 +24,7 @@ module deck_flow
     character(word_length) :: riemann = 'hllc'
     real(wp) :: burn_width = 5 !< cells over which the energy of a programmed charge is released
     real(wp) :: gravity(3) = 0
+    logical :: sleep = .true.
     real(wp) :: ambient_pressure = unset !< overpressures are against it; set by the checks from the last 'all' region
     integer :: line = 0
   end type flow_group
@@ -42,6 +43,7 @@ contains
     call table%add('shocks', group%shocks, shock_names)
     call table%add('riemann', group%riemann, [character(word_length) :: 'hllc'])
     call table%add('burn_width', group%burn_width, at_least=1.0_wp, at_most=20.0_wp)
+    call table%add('sleep', group%sleep)
     call table%add('gravity', group%gravity, of_acceleration, usual=[-1e4_wp, 1e4_wp])
     call table%add('ambient_pressure', group%ambient_pressure, of_pressure, usual=[-1e9_wp, 1e9_wp])
   end subroutine flow_keys

@@ -1,7 +1,7 @@
 !> The blast of one charge on a fine mesh of its own, in one radial direction: a scene like any other, whose mesh grows with the
 !> wave.
 module radial_run
-  use blocks, only: block
+  use blocks, only: block, own
   use charge_reach, only: ambient_region, cells_in_charge, charge_radius, dimensions_of_blast
   use deck_types, only: deck_type, region_group
   use errors, only: fatal, exit_bad_input
@@ -98,9 +98,11 @@ contains
     alone%mesh%upper(1) = cells*(charge_radius(deck, c)/cells_in_charge(deck, c))
     alone%mesh%brick(1) = brick
     alone%boundary = none%boundary
+    alone%stages = none%stages
     alone%boundary%x_low = 'symmetry'
     alone%boundary%inflow_material = deck%boundary%inflow_material ! one of the flow's materials
     alone%flow%gravity = 0
+    alone%flow%sleep = .false. ! the mesh grows with the wave instead
     ! the surroundings cover all other regions, which stay for their materials
     ambient = deck%region(ambient_region(deck, c))
     alone%region = [(deck%region(i), i=1, size(deck%region)), ambient]
@@ -131,6 +133,7 @@ contains
       call start_peaks(run%peaks, mesh, deck%flow%ambient_pressure, 0.01_wp*abs(deck%flow%ambient_pressure))
       allocate (run%impulse(mesh%n_local))
       do b = 1, mesh%n_local
+        call own(run%peaks%map, b)
         allocate (run%impulse(b)%a(mesh%brick_cells(1), 2, 1, 1), source=0.0_wp)
         run%impulse(b)%a(:, 2, 1, 1) = flow%w(b, flow%current)%a(1:mesh%brick_cells(1), flow%layout%pressure(), 1, 1) &
                                        - run%peaks%ambient

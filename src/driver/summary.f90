@@ -1,6 +1,7 @@
 !> summary.json: what ran, how fast, how well it kept its books, what was repaired, how it ended.
 module summary
   use balance, only: balance_type
+  use constants, only: unset
   use checksum, only: mix_reals, mix_integer, hexadecimal, empty_checksum
   use flow_state, only: repair_names
   use fragments, only: fragment_list
@@ -9,6 +10,7 @@ module summary
   use parallel, only: n_ranks
   use reductions, only: reduce_sum
   use scene, only: scene_type
+  use sleeping_bricks, only: awake_share
   use version, only: version_string
   implicit none
   private
@@ -36,11 +38,12 @@ contains
     character(*), intent(in) :: name
     type(json_file) :: file
     character(32), allocatable :: phases(:)
-    real(wp) :: cells, particles
+    real(wp) :: cells, particles, awake
     character(16) :: fingerprint
     integer :: i
     fingerprint = state_checksum(scene)
     cells = product(real(scene%mesh%cells, wp))
+    awake = awake_share(scene%flow)
     particles = 0
     if (scene%has_solid) particles = sum(balance%solid%count)
     call open_json(file, name)
@@ -70,7 +73,8 @@ contains
     end do
     call json_end(file)
     if (scene%has_flow .and. figures%flow_steps > 0) call json_put(file, 'ns_per_cell_and_stage', &
-      1e9_wp*n_ranks*scene%watch%seconds('flow')/(cells*3*figures%flow_steps))
+      1e9_wp*n_ranks*scene%watch%seconds('flow')/max(cells*awake*3*figures%flow_steps, 1.0_wp))
+    if (scene%has_flow) call json_put(file, 'mean_share_of_bricks_awake', awake)
     if (particles > 0 .and. figures%solid_steps > 0) call json_put(file, 'ns_per_particle_and_step', &
       1e9_wp*n_ranks*scene%watch%seconds('solid')/(particles*figures%solid_steps))
     call json_put(file, 'peak_memory_bytes', figures%memory)
@@ -92,6 +96,13 @@ contains
         call json_put(file, 'energy_released', balance%flow%afterburnt)
         call json_end(file)
       end if
+    end if
+    if (scene%coupled .or. scene%stages%solid_over) then
+      call json_begin(file, 'stages')
+      if (scene%stages%solid_started > unset) call json_put(file, 'solid_started', scene%stages%solid_started)
+      if (scene%stages%flow_over) call json_put(file, 'flow_ended', scene%stages%flow_ended)
+      if (scene%stages%solid_over) call json_put(file, 'solid_ended', scene%stages%solid_ended)
+      call json_end(file)
     end if
     if (scene%coupled) then
       call json_begin(file, 'coupling')
@@ -129,16 +140,17 @@ contains
     character(16) :: digits
     integer(i8) :: mixed, low, high
     real(wp) :: partial(2, scene%mesh%n_local), total(2)
-    integer :: b, set, j, k, v, column
+    integer :: b, h, set, j, k, v, column
     integer(i8), parameter :: mask = 4294967295_i8
     do b = 1, scene%mesh%n_local
       mixed = mix_integer(empty_checksum, int(scene%mesh%local(b), i8))
       associate (n => scene%mesh%brick_cells)
-        if (scene%has_flow) then
+        if (scene%flow_runs()) then
+          h = scene%flow%holder(b)
           do k = 1, n(3)
             do j = 1, n(2)
               do v = 1, scene%flow%layout%n_rows
-                mixed = mix_reals(mixed, scene%flow%w(b, scene%flow%current)%a(1:n(1), v, j, k))
+                mixed = mix_reals(mixed, scene%flow%w(h, scene%flow%current)%a(1:n(1), v, j, k))
               end do
             end do
           end do

@@ -1,6 +1,6 @@
 !> Ghost cells at the faces of the domain. Sweeps go direction by direction, so edges and corners are not needed.
 module flow_boundary
-  use flow_state, only: flow_type, face_symmetry, face_inflow
+  use flow_state, only: flow_type, face_symmetry, face_inflow, face_ambient
   use kinds, only: wp
   use mesh, only: mesh_type
   implicit none
@@ -10,7 +10,8 @@ module flow_boundary
 contains
 
   !> Fills the ghost cells outside the domain of local brick b in the given buffer.
-  !> Symmetry mirrors the state and turns the normal velocity: a slip wall. Outflow repeats the last cell.
+  !> Symmetry mirrors the state and turns the normal velocity: a slip wall. Outflow repeats the last cell. Beyond an ambient
+  !> face the surroundings are as they were: a shock that leaves meets there what it has met before.
   subroutine fill_boundary(mesh, flow, b, buffer)
     type(mesh_type), intent(in) :: mesh
     type(flow_type), intent(inout) :: flow
@@ -39,8 +40,14 @@ contains
         case default
           from = last
         end select
-        call copy_layer(w, d, from, last + outward*layer, merge(-1.0_wp, 1.0_wp, kind == face_symmetry))
-        if (kind == face_inflow) call set_layer(w, d, last + outward*layer)
+        select case (kind)
+        case (face_inflow)
+          call set_layer(w, d, last + outward*layer, flow%inflow)
+        case (face_ambient)
+          call set_layer(w, d, last + outward*layer, flow%ambient)
+        case default
+          call copy_layer(w, d, from, last + outward*layer, merge(-1.0_wp, 1.0_wp, kind == face_symmetry))
+        end select
       end do
     end subroutine fill_face
 
@@ -75,15 +82,16 @@ contains
       to = factor*from
     end subroutine copy_row
 
-    subroutine set_layer(w, d, layer)
+    subroutine set_layer(w, d, layer, state)
       real(wp), allocatable, intent(inout) :: w(:, :, :, :)
       integer, intent(in) :: d, layer
+      real(wp), intent(in) :: state(:)
       integer :: v
       do v = 1, flow%layout%n_rows
         select case (d)
-        case (1); w(layer, v, :, :) = flow%inflow(v)
-        case (2); w(:, v, layer, :) = flow%inflow(v)
-        case (3); w(:, v, :, layer) = flow%inflow(v)
+        case (1); w(layer, v, :, :) = state(v)
+        case (2); w(:, v, layer, :) = state(v)
+        case (3); w(:, v, :, layer) = state(v)
         end select
       end do
     end subroutine set_layer

@@ -8,7 +8,7 @@ module flow_filling
   use relaxation_fallback, only: relax_cell
   implicit none
   private
-  public :: share_of_regions, mixed_cell, trace_density, halvings_for
+  public :: share_of_regions, no_surface_cuts, mixed_cell, trace_density, halvings_for
 
   !> One region or charge: a shape and what it is filled with.
   type, public :: filling_type
@@ -28,6 +28,19 @@ contains
     share = 0
     call add_shares(filling, center, width, 0, 1.0_wp, share)
   end subroutine share_of_regions
+
+  !> True if no surface of a filling cuts a box, or comes near enough for round-off to matter: all boxes in it have the same shares.
+  pure logical function no_surface_cuts(filling, center, width)
+    type(filling_type), intent(in) :: filling(:)
+    real(wp), intent(in) :: center(3), width(3)
+    integer :: r
+    no_surface_cuts = .true.
+    do r = 1, size(filling)
+      associate (shape => filling(r)%shape)
+        if (abs(shape%distance(center)) < 0.500001_wp*norm2(merge(width, 0.0_wp, shape%active))) no_surface_cuts = .false.
+      end associate
+    end do
+  end function no_surface_cuts
 
   pure recursive subroutine add_shares(filling, center, width, level, weight, share)
     type(filling_type), intent(in) :: filling(:)

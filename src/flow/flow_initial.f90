@@ -8,10 +8,11 @@ module flow_initial
   use equation_of_state, only: eos_type
   use eos_check, only: check_eos, shocked_density
   use errors, only: fatal, warn, exit_bad_input
-  use flow_filling, only: filling_type, share_of_regions, mixed_cell, trace_density, halvings_for
+  use flow_filling, only: filling_type, share_of_regions, no_surface_cuts, mixed_cell, trace_density, halvings_for
   use flow_scheme, only: scheme_type, scheme_from_words
   use flow_shapes, only: filled_shape, volume_in_box, shape_all, shape_box, shape_sphere, shape_cylinder, shape_half_space
-  use flow_state, only: flow_type, allocate_flow, set_inflow, face_outflow, face_symmetry, face_inflow, face_periodic
+  use flow_state, only: flow_type, allocate_flow, hold_cells, set_inflow, face_outflow, face_symmetry, face_inflow, &
+    face_periodic, face_ambient
   use geometry, only: cell_volumes
   use kinds, only: wp
   use log, only: say
@@ -19,6 +20,7 @@ module flow_initial
   use mesh, only: mesh_type
   use mixture, only: cell_from
   use reductions, only: reduce_sum, reduce_min
+  use sleeping_bricks, only: sleep_if_uniform, start_in_state
   use text, only: str, lowercase
   implicit none
   private
@@ -46,7 +48,8 @@ contains
       name(i) = deck%material(used(i))%name
       eos(i) = eos_of(deck%material(used(i)))
     end do
-    call allocate_flow(flow, mesh, name, eos)
+    call allocate_flow(flow, mesh, name, eos, without_cells=.true.)
+    flow%sleep = deck%flow%sleep
     flow%cfl = deck%flow%cfl
     flow%scheme = flow_scheme_of(deck)
     flow%trace_fraction = merge(deck%flow%trace_fraction, 0.0_wp, size(used) > 1)
@@ -66,6 +69,7 @@ contains
       density, pressure)
     call weigh_charges(mesh, deck, flow, filling)
     flow%burn_total = unburnt_energy(mesh, flow)
+    if (any(flow%face == face_ambient)) call set_ambient(deck, flow, filling, density, pressure)
     if (any(flow%face == face_inflow)) call prepare_inflow(deck, flow, used, density, pressure)
     call set_noise(mesh, flow)
   end subroutine setup_flow
@@ -134,6 +138,7 @@ contains
         select case (lowercase(trim(deck%boundary%flow_face(d, side))))
         case ('symmetry'); flow%face(side, d) = face_symmetry
         case ('inflow'); flow%face(side, d) = face_inflow
+        case ('ambient'); flow%face(side, d) = face_ambient
         case ('periodic'); flow%face(side, d) = face_periodic
         case default; flow%face(side, d) = face_outflow
         end select
@@ -323,25 +328,45 @@ contains
     type(flow_type), intent(inout) :: flow
     type(filling_type), intent(in) :: filling(:)
     real(wp), intent(in) :: density(:), pressure(:)
-    real(wp) :: share(size(filling)), center(3)
+    real(wp) :: share(size(filling)), center(3), width(3), cell(flow%layout%n_rows)
+    logical :: is_filled
     integer :: b, i, j, k
     do b = 1, mesh%n_local
+      width = mesh%brick_cells*mesh%spacing
+      if (no_surface_cuts(filling, mesh%brick(mesh%local(b))%origin + 0.5_wp*width, width)) then
+        call fill_cell(1, 1, 1)
+        if (.not. is_filled) return
+        call start_in_state(mesh, flow, b, cell)
+        cycle
+      end if
+      call hold_cells(flow, mesh, b)
       do k = 1, mesh%brick_cells(3)
         do j = 1, mesh%brick_cells(2)
           do i = 1, mesh%brick_cells(1)
-            center = mesh%brick(mesh%local(b))%origin + ([i, j, k] - 0.5_wp)*mesh%spacing
-            call share_of_regions(filling, center, mesh%spacing, share)
-            if (sum(share) < 1 - 1e-6_wp) then
-              call fatal('region: the cell at '//str(center(1))//' '//str(center(2))//' '//str(center(3))// &
-                ' is not filled by any region', exit_bad_input)
-              return
-            end if
-            flow%w(b, flow%current)%a(i, :, j, k) = mixed_cell(flow%layout, flow%eos, filling, share/sum(share), &
-              flow%trace_fraction, density, pressure)
+            call fill_cell(i, j, k)
+            if (.not. is_filled) return
+            flow%w(b, flow%current)%a(i, :, j, k) = cell
           end do
         end do
       end do
+      call sleep_if_uniform(mesh, flow, b)
     end do
+
+  contains
+
+    subroutine fill_cell(i, j, k)
+      integer, intent(in) :: i, j, k
+      center = mesh%brick(mesh%local(b))%origin + ([i, j, k] - 0.5_wp)*mesh%spacing
+      call share_of_regions(filling, center, mesh%spacing, share)
+      is_filled = .not. sum(share) < 1 - 1e-6_wp
+      if (is_filled) then
+        cell = mixed_cell(flow%layout, flow%eos, filling, share/sum(share), flow%trace_fraction, density, pressure)
+      else
+        call fatal('region: the cell at '//str(center(1))//' '//str(center(2))//' '//str(center(3))// &
+          ' is not filled by any region', exit_bad_input)
+      end if
+    end subroutine fill_cell
+
   end subroutine fill_bricks
 
   !> Compares the placed mass of each charge with the part of the asked mass that lies inside the domain.
@@ -350,14 +375,20 @@ contains
     type(deck_type), intent(in) :: deck
     type(flow_type), intent(in) :: flow
     type(filling_type), intent(in) :: filling(:)
-    real(wp) :: share(size(filling)), placed(size(deck%charge), mesh%n_local), total(size(deck%charge)), center(3), inside, &
-      volume(mesh%brick_cells(1))
+    real(wp) :: share(size(filling)), placed(size(deck%charge), mesh%n_local), total(size(deck%charge)), center(3), width(3), &
+      inside, volume(mesh%brick_cells(1))
     integer :: b, i, j, k, n, c
     if (all(deck%charge%is_mapped())) return
     n = size(deck%region)
     placed = 0
     do b = 1, mesh%n_local
       volume = cell_volumes(mesh, b)
+      width = mesh%brick_cells*mesh%spacing
+      center = mesh%brick(mesh%local(b))%origin + 0.5_wp*width
+      if (no_surface_cuts(filling, center, width)) then
+        call share_of_regions(filling, center, mesh%spacing, share)
+        if (.not. any(share(n + 1:) > 0)) cycle
+      end if
       do k = 1, mesh%brick_cells(3)
         do j = 1, mesh%brick_cells(2)
           do i = 1, mesh%brick_cells(1)
@@ -417,6 +448,24 @@ contains
     end select
   end function dimensions_of
 
+  !> The surroundings: the last region that fills all, else the first region.
+  subroutine set_ambient(deck, flow, filling, density, pressure)
+    type(deck_type), intent(in) :: deck
+    type(flow_type), intent(inout) :: flow
+    type(filling_type), intent(in) :: filling(:)
+    real(wp), intent(in) :: density(:), pressure(:)
+    real(wp) :: share(size(filling))
+    integer :: i, last
+    if (size(deck%region) == 0) return
+    last = 1
+    do i = 1, size(deck%region)
+      if (lowercase(trim(deck%region(i)%shape)) == 'all') last = i
+    end do
+    share = 0
+    share(last) = 1
+    flow%ambient = mixed_cell(flow%layout, flow%eos, filling, share, flow%trace_fraction, density, pressure)
+  end subroutine set_ambient
+
   subroutine prepare_inflow(deck, flow, used, density, pressure)
     type(deck_type), intent(in) :: deck
     type(flow_type), intent(inout) :: flow
@@ -448,7 +497,7 @@ contains
     slowest = huge(1.0_wp)
     associate (n => mesh%brick_cells)
       do b = 1, mesh%n_local
-        slowest = min(slowest, minval(flow%w(b, flow%current)%a(1:n(1), c, 1:n(2), 1:n(3))))
+        slowest = min(slowest, minval(flow%w(flow%holder(b), flow%current)%a(1:n(1), c, 1:n(2), 1:n(3))))
       end do
     end associate
     call reduce_min(slowest, nothing)

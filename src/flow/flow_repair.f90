@@ -29,8 +29,16 @@ contains
     integer :: b, i, j, k
     is_new = .false.
     lowest = flow%lowest_pressure()
+    if (.not. allocated(flow%troubled(mesh%n_local + 1)%a)) &
+      call allocate_cells(flow%troubled(mesh%n_local + 1), mesh%brick_cells, mesh%ghost, 1, 0.0_wp)
     do b = 1, mesh%n_local
-      if (.not. allocated(flow%troubled(b)%a)) call allocate_cells(flow%troubled(b), mesh%brick_cells, mesh%ghost, 1, 0.0_wp)
+      if (.not. allocated(flow%troubled(b)%a)) then
+        if (flow%w(b, buffer)%shares > 0) then
+          flow%troubled(b)%shares = mesh%n_local + 1
+        else
+          call allocate_cells(flow%troubled(b), mesh%brick_cells, mesh%ghost, 1, 0.0_wp)
+        end if
+      end if
       if (.not. suspect(b)) cycle
       do k = 1, mesh%brick_cells(3)
         do j = 1, mesh%brick_cells(2)
@@ -52,7 +60,8 @@ contains
   !> True if a brick or the cells around it hold marked cells.
   pure logical function troubled_around(troubled)
     type(block), intent(in) :: troubled
-    troubled_around = any(troubled%a > 0)
+    troubled_around = allocated(troubled%a)
+    if (troubled_around) troubled_around = any(troubled%a > 0)
   end function troubled_around
 
   !> Takes all marks away.
@@ -61,6 +70,7 @@ contains
     integer :: b
     do b = 1, size(flow%troubled)
       if (allocated(flow%troubled(b)%a)) deallocate (flow%troubled(b)%a)
+      flow%troubled(b)%shares = 0
     end do
   end subroutine none_troubled
 

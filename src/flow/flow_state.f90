@@ -1,7 +1,7 @@
 !> The flow of this rank: state of its bricks in three rotating buffers, materials, boundary conditions, books and repairs.
 module flow_state
   use afterburn, only: afterburn_type
-  use blocks, only: block, allocate_cells
+  use blocks, only: block, allocate_cells, holder
   use brick_stage, only: stage_scratch
   use equation_of_state, only: eos_type
   use flow_layout, only: layout_type, new_layout, n_flow_books
@@ -10,15 +10,18 @@ module flow_state
   use mesh, only: mesh_type
   implicit none
   private
-  public :: allocate_flow, set_inflow
+  public :: allocate_flow, hold_cells, set_inflow, release_cells
 
-  integer, parameter, public :: face_outflow = 1, face_symmetry = 2, face_inflow = 3, face_periodic = 4
+  integer, parameter, public :: face_outflow = 1, face_symmetry = 2, face_inflow = 3, face_periodic = 4, &
+    face_ambient = 5
 
   !> Kinds of repair that are counted.
   integer, parameter, public :: repair_negative_mass = 1, repair_clipped_fraction = 2, repair_relaxation = 3, &
     repair_low_pressure = 4, repair_first_order = 5, n_repairs = 5
   character(28), parameter, public :: repair_names(n_repairs) = [character(28) :: 'negative mass set to nil', &
     'volume fraction clipped', 'relaxation by bisection', 'pressure lifted to its floor', 'redone in first order']
+
+  integer, parameter, public :: most_common_states = 8 !< that the sleeping bricks of a rank may have
 
   real(wp), parameter :: no_noise = 1e-100_wp !< eps**2 that does no more than keep 0/0 away
 
@@ -34,7 +37,9 @@ module flow_state
     character(64), allocatable :: name(:) !< of the materials
     type(eos_type), allocatable :: eos(:)
     type(layout_type) :: layout
-    type(block), allocatable :: w(:, :) !< state: local brick, buffer 1..3
+    !> State: local brick, buffer 1..3. Sleeping bricks share one of the blocks of common states that stand behind those of the
+    !> bricks: flow%holder(b) is the index of the block that holds the state of brick b.
+    type(block), allocatable :: w(:, :)
     integer :: current = 1 !< buffer of the state at the start of the step
     type(scheme_type) :: scheme
     real(wp), allocatable :: eps2(:) !< square of the limiter's eps for each reconstructed row, in the row's units
@@ -47,11 +52,13 @@ module flow_state
     real(wp) :: gravity(3) = 0
     integer :: face(2, 3) = face_outflow !< condition at the low and high face of each direction
     real(wp), allocatable :: inflow(:) !< rows of the state that enters
+    real(wp), allocatable :: ambient(:) !< rows of the state beyond ambient faces
     type(block), allocatable :: open(:) !< 1 flows, 0 closed; allocated only in bricks with closed cells; ghosts filled
     type(block), allocatable :: wall_impulse(:) !< momentum (3) given to closed cells, in the open cell beside them; with open
     type(block), allocatable :: wall(:) !< of walls that move: velocity (3) in closed cells, normal (3) in open ones beside them
     logical :: slip = .true. !< gas glides along walls that move
-    type(block), allocatable :: troubled(:) !< 1 where a stage is redone with first-order fluxes; allocated while that goes on
+    !> 1 where a stage is redone with first-order fluxes; allocated while that goes on; sleeping bricks share the last one, all nil.
+    type(block), allocatable :: troubled(:)
     type(block), &
       allocatable :: arrival(:) !< of the detonation front; allocated in bricks that hold explosive still to burn; with ghosts
     real(wp), allocatable :: burn_energy(:), burn_rate(:) !< of each material: see burn_release
@@ -62,27 +69,37 @@ module flow_state
     real(wp), allocatable :: books(:, :, :) !< what entered: conserved quantity, face (x low, x high, ...) or book_*, local brick
     type(repair_log) :: repairs
     type(stage_scratch) :: scratch
+    logical :: sleep = .true. !< bricks in one uniform state hold no cells of their own and are not advanced
+    logical, allocatable :: kept_awake(:) !< local bricks whose cells the coupling changes between stages
+    logical, allocatable :: closed(:) !< of each local brick: all its cells and those beside them are closed
+    logical :: common_closed(most_common_states) = .false. !< common states of closed bricks, in which nothing flows
+    type(stage_scratch) :: common_scratch
+    integer(i8) :: advanced_bricks = 0, all_bricks = 0 !< of this rank, summed over the stages
   contains
     procedure :: target => target_buffer
+    procedure :: holder => state_holder
     procedure :: lowest_pressure
     procedure :: material_name
   end type flow_type
 
 contains
 
-  !> Allocates the flow on this rank's bricks: all ones, to be filled. name, eos: of the materials.
-  subroutine allocate_flow(flow, mesh, name, eos)
+  !> Allocates the flow on this rank's bricks: all ones, to be filled. name, eos: of the materials; without_cells: the state is not
+  !> allocated yet, hold_cells does that brick by brick.
+  subroutine allocate_flow(flow, mesh, name, eos, without_cells)
     type(flow_type), intent(inout) :: flow
     type(mesh_type), intent(in) :: mesh
     character(*), intent(in) :: name(:)
     type(eos_type), intent(in) :: eos(:)
-    integer :: b, buffer
+    logical, intent(in), optional :: without_cells
+    integer :: b
     flow%n_materials = size(eos)
     flow%name = name
     flow%eos = eos
     flow%layout = new_layout(eos)
-    allocate (flow%w(mesh%n_local, 3), flow%open(mesh%n_local), flow%wall_impulse(mesh%n_local), flow%wall(mesh%n_local), &
-      flow%troubled(mesh%n_local), flow%arrival(mesh%n_local))
+    allocate (flow%w(mesh%n_local + most_common_states, 3), flow%open(mesh%n_local), flow%wall_impulse(mesh%n_local), &
+      flow%wall(mesh%n_local), flow%troubled(mesh%n_local + 1), flow%arrival(mesh%n_local))
+    allocate (flow%closed(mesh%n_local), flow%kept_awake(mesh%n_local), source=.false.)
     allocate (flow%eps2(flow%layout%n_reconstructed), source=no_noise)
     allocate (flow%steepest(flow%layout%n_reconstructed), source=4.0_wp)
     if (size(eos) > 1) then
@@ -99,15 +116,41 @@ contains
     allocate (flow%burn_energy(size(eos)), flow%burn_rate(size(eos)), source=0.0_wp)
     allocate (flow%afterburn(size(eos)))
     allocate (flow%books(flow%layout%n_conserved, n_flow_books, mesh%n_local), source=0.0_wp)
-    do buffer = 1, 3
-      do b = 1, mesh%n_local
-        call allocate_cells(flow%w(b, buffer), mesh%brick_cells, mesh%ghost, flow%layout%n_rows, 1.0_wp)
-      end do
+    do b = 1, mesh%n_local
+      if (present(without_cells)) then
+        if (without_cells) exit
+      end if
+      call hold_cells(flow, mesh, b)
     end do
     do b = 1, 3
       if (mesh%periodic(b)) flow%face(:, b) = face_periodic
     end do
   end subroutine allocate_flow
+
+  !> Gives the memory of a flow back that is needed no more; books and counts stay.
+  subroutine release_cells(flow)
+    type(flow_type), intent(inout) :: flow
+    deallocate (flow%w, flow%open, flow%wall_impulse, flow%wall, flow%troubled, flow%arrival)
+  end subroutine release_cells
+
+  !> Allocates the state of local brick or common state b: all ones.
+  subroutine hold_cells(flow, mesh, b)
+    type(flow_type), intent(inout) :: flow
+    type(mesh_type), intent(in) :: mesh
+    integer, intent(in) :: b
+    integer :: buffer
+    do buffer = 1, 3
+      call allocate_cells(flow%w(b, buffer), mesh%brick_cells, mesh%ghost, flow%layout%n_rows, 1.0_wp)
+      flow%w(b, buffer)%shares = 0
+    end do
+  end subroutine hold_cells
+
+  !> Index in w of the block that holds the state of local brick b: its own, or the one that it shares.
+  pure integer function state_holder(self, b)
+    class(flow_type), intent(in) :: self
+    integer, intent(in) :: b
+    state_holder = holder(self%w(:, self%current), b)
+  end function state_holder
 
   !> Buffer that stage 1, 2 or 3 writes; stage 3's becomes the state.
   pure integer function target_buffer(self, stage)

@@ -2,16 +2,17 @@
 !> The coupling may change velocities in the buffer that a stage wrote: the next stage starts from what it finds there.
 module flow_step
   use afterburn, only: released_in_step
-  use blocks, only: block
+  use blocks, only: block, row_length
   use brick_stage, only: advance_brick, prepare_scratch, stage_type, brick_report
   use flow_boundary, only: fill_boundary
   use flow_repair, only: repair_brick, count_repair, mark_troubled, none_troubled, troubled_around
-  use flow_state, only: flow_type, repair_negative_mass, repair_clipped_fraction, repair_relaxation
+  use flow_state, only: flow_type, most_common_states, repair_negative_mass, repair_clipped_fraction, repair_relaxation
   use geometry, only: cell_volumes, x_face_areas
   use halo, only: halo_type, fill
   use kinds, only: wp
   use mesh, only: mesh_type
   use reductions, only: any_rank
+  use sleeping_bricks, only: is_asleep, wake, wake_in_stage, let_sleep, rouse, note_closed, advance_common_states, book_sleeper
   implicit none
   private
   public :: advance_stage, accept_step, fill_ghosts
@@ -29,9 +30,9 @@ module flow_step
 
 contains
 
-  !> Stage 1, 2 or 3 of a step of length dt on all bricks of this rank. Cells that get a negative mass, pressure or square of the
-  !> sound speed are troubled: the stage is redone in their bricks with first-order fluxes at all their faces, on both sides
-  !> alike, so nothing is lost. What is still bad after that is repaired.
+  !> Stage 1, 2 or 3 of a step of length dt on all bricks of this rank that are awake. Cells that get a negative mass, pressure or
+  !> square of the sound speed are troubled: the stage is redone in their bricks with first-order fluxes at all their faces, on both
+  !> sides alike, so nothing is lost. What is still bad after that is repaired.
   subroutine advance_stage(mesh, halo, flow, stage, dt)
     type(mesh_type), intent(in) :: mesh
     type(halo_type), intent(inout) :: halo
@@ -41,23 +42,37 @@ contains
     type(stage_type) :: plan
     type(books_type) :: books
     type(brick_report) :: report(mesh%n_local)
+    real(wp) :: flux(flow%layout%n_conserved, 3, most_common_states)
     logical :: is_new
     integer :: b, from, attempt
     from = flow%current
     if (stage > 1) from = flow%target(stage - 1)
-    call fill_ghosts(mesh, halo, flow, from)
     plan = stage_plan(mesh, flow, stage, dt)
-    if (mesh%n_local > 0) call prepare_scratch(flow%scratch, flow%layout, mesh%brick_cells, size(flow%w(1, 1)%a, 1))
+    if (stage == 1) call note_closed(mesh, flow)
+    call rouse(mesh, flow, plan, from)
+    call fill_ghosts(mesh, halo, flow, from)
+    if (stage == 1) call let_sleep(mesh, flow, plan, from, only_faces(flow))
+    call prepare_scratch(flow%scratch, flow%layout, mesh%brick_cells, row_length(mesh%brick_cells, mesh%ghost))
     call keep_books(flow, books)
+    call advance_common_states(mesh, flow, plan, from, flow%target(stage), flux)
     do b = 1, mesh%n_local
-      call advance_one(mesh, flow, plan, b, from, flow%current, flow%target(stage), report(b))
+      if (flow%closed(b)) then
+        if (.not. is_asleep(flow, b)) flow%w(b, flow%target(stage))%a = flow%w(b, from)%a
+      else if (is_asleep(flow, b)) then
+        call book_sleeper(mesh, plan, b, flux(:, :, flow%w(b, from)%shares - mesh%n_local), flow%books(:, :, b))
+      else
+        call advance_one(mesh, flow, plan, b, from, flow%current, flow%target(stage), report(b))
+        flow%advanced_bricks = flow%advanced_bricks + 1
+      end if
     end do
+    flow%all_bricks = flow%all_bricks + mesh%n_local
     do attempt = 1, most_attempts
       if (.not. any_rank(any(report%bad + report%negative_masses > 0))) exit
       call mark_troubled(mesh, halo, flow, flow%target(stage), report%bad + report%negative_masses > 0, is_new)
       if (.not. any_rank(is_new)) exit
       do b = 1, mesh%n_local
-        if (.not. troubled_around(flow%troubled(b))) cycle
+        if (flow%closed(b) .or. .not. troubled_around(flow%troubled(b))) cycle
+        if (is_asleep(flow, b)) call wake_in_stage(mesh, flow, b, from)
         flow%books(:, :, b) = books%entered(:, :, b)
         if (allocated(books%wall_impulse(b)%a)) flow%wall_impulse(b)%a = books%wall_impulse(b)%a
         call advance_one(mesh, flow, plan, b, from, flow%current, flow%target(stage), report(b))
@@ -78,21 +93,27 @@ contains
     flow%current = flow%target(3)
   end subroutine accept_step
 
-  !> Ghost cells of one buffer, from neighbours and from the boundary conditions. What looks across the direction of a sweep needs
-  !> those beyond the edges of bricks too.
+  !> Ghost cells of one buffer, from neighbours and from the boundary conditions. Sleeping bricks whose ghosts would differ from
+  !> their cells wake.
   subroutine fill_ghosts(mesh, halo, flow, buffer)
     type(mesh_type), intent(in) :: mesh
     type(halo_type), intent(inout) :: halo
     type(flow_type), intent(inout) :: flow
     integer, intent(in) :: buffer
-    logical :: only_faces
     integer :: b
-    only_faces = .not. (flow%scheme%cure_shocks .or. (flow%scheme%sharpen .and. flow%n_materials > 1))
-    call fill(mesh, halo, flow%w(:, buffer), flow%layout%n_rows, only_faces)
+    call fill(mesh, halo, flow%w(:, buffer), flow%layout%n_rows, only_faces(flow), flow%closed)
     do b = 1, mesh%n_local
+      if (flow%w(b, buffer)%shares > 0) cycle
+      call wake(flow, b)
       call fill_boundary(mesh, flow, b, buffer)
     end do
   end subroutine fill_ghosts
+
+  !> True if no ghosts beyond the edges of bricks are needed: what looks across the direction of a sweep needs them.
+  pure logical function only_faces(flow)
+    type(flow_type), intent(in) :: flow
+    only_faces = .not. (flow%scheme%cure_shocks .or. (flow%scheme%sharpen .and. flow%n_materials > 1))
+  end function only_faces
 
   !> What all bricks need to know of a stage.
   function stage_plan(mesh, flow, stage, dt) result(plan)

@@ -1,7 +1,7 @@
 !> The largest stable time step of the flow, and the cell that sets it.
 module flow_time_step
   use flow_repair, only: cell_centre
-  use flow_state, only: flow_type
+  use flow_state, only: flow_type, most_common_states
   use kinds, only: wp
   use mesh, only: mesh_type
   use mixture, only: cell_fractions
@@ -28,22 +28,27 @@ contains
     type(flow_type), intent(in) :: flow
     type(flow_limit_type) :: limit
     real(wp) :: largest, found, companion(8), cell(flow%layout%n_rows), over_h(3)
-    integer :: b, i, j, k, at(3), fastest_row(4), n(3), ld, u, c
+    logical :: seen(mesh%n_local + most_common_states)
+    integer :: b, i, j, k, at(3), fastest_row(4), n(3), ld, u, c, h
     largest = -1
     fastest_row = 0
     n = mesh%brick_cells
     over_h = merge(1/mesh%spacing, 0.0_wp, mesh%active)
     u = flow%layout%velocity_row
     c = flow%layout%sound_speed_row
+    seen = .false.
     do b = 1, mesh%n_local
-      ld = size(flow%w(b, flow%current)%a, 1)
+      h = flow%holder(b)
+      if (seen(h)) cycle ! the same cells as those of an earlier brick
+      seen(h) = .not. allocated(flow%open(b)%a)
+      ld = size(flow%w(h, flow%current)%a, 1)
       do k = 1, n(3)
         do j = 1, n(2)
           if (allocated(flow%open(b)%a)) then
-            found = fastest_open(n(1), ld, over_h, flow%w(b, flow%current)%a(1, u, j, k), &
-              flow%w(b, flow%current)%a(1, c, j, k), flow%open(b)%a(1, 1, j, k))
+            found = fastest_open(n(1), ld, over_h, flow%w(h, flow%current)%a(1, u, j, k), &
+              flow%w(h, flow%current)%a(1, c, j, k), flow%open(b)%a(1, 1, j, k))
           else
-            found = fastest(n(1), ld, over_h, flow%w(b, flow%current)%a(1, u, j, k), flow%w(b, flow%current)%a(1, c, j, k))
+            found = fastest(n(1), ld, over_h, flow%w(h, flow%current)%a(1, u, j, k), flow%w(h, flow%current)%a(1, c, j, k))
           end if
           if (.not. found > largest) cycle
           largest = found
@@ -55,7 +60,7 @@ contains
     if (fastest_row(4) > 0) then
       b = fastest_row(4)
       do i = 1, n(1)
-        cell = flow%w(b, flow%current)%a(i, :, fastest_row(2), fastest_row(3))
+        cell = flow%w(flow%holder(b), flow%current)%a(i, :, fastest_row(2), fastest_row(3))
         if (signal_rate(cell) < largest) cycle
         if (allocated(flow%open(b)%a)) then
           if (.not. flow%open(b)%a(i, 1, fastest_row(2), fastest_row(3)) > 0) cycle

@@ -20,6 +20,7 @@ module radial_mapping
   use radial_profile, only: radial_profile_type
   use radial_shells, only: shells_of_box, volume_of_ball
   use reductions, only: reduce_sum
+  use sleeping_bricks, only: wake
   implicit none
   private
   public :: map_profile, part_of_blast
@@ -149,6 +150,7 @@ contains
             call shells_of_box(place_of(mesh, center, b, [i, j, k]), mesh%spacing, mesh%active, mesh%radial_power, &
                                profile%thickness, size(correction), first, last, volume, way)
             if (first > last) cycle
+            if (.not. is_hit(b)) call wake(flow, b)
             is_hit(b) = .true.
             ! what the shells leave of the cell keeps its state
             call open_state(flow, flow%w(b, flow%current)%a(i, :, j, k), content, momentum)

@@ -1,8 +1,8 @@
 !> The only communication of fields: *fill* ghost cells from neighbours, *add* what bricks hold of the nodes they share.
 !> A plan is made once per change of the brick set; then each verb is one message per neighbour rank and copies inside a rank.
 module halo
-  use blocks, only: block
-  use kinds, only: wp
+  use blocks, only: block, holder, own
+  use kinds, only: wp, i8
   use mesh, only: mesh_type
   use mpi_f08, only: MPI_Request, MPI_Irecv, MPI_Isend, MPI_Waitall, MPI_DOUBLE_PRECISION, MPI_STATUSES_IGNORE
   use parallel, only: world, my_rank => rank, n_ranks
@@ -109,31 +109,63 @@ contains
   end subroutine list_gifts
 
   !> Ghost cells of all local blocks get the values of the neighbours' cells; those outside the domain are left alone.
-  !> n_var: variables 1..n_var travel; only_faces: leave out edges and corners; all blocks must be allocated.
-  subroutine fill(mesh, halo, blocks, n_var, only_faces)
+  !> n_var: variables 1..n_var travel; only_faces: leave out edges and corners; unread: bricks whose ghosts need not be filled.
+  !> All blocks must be allocated or share the numbers of another: these get numbers of their own where their ghosts would change.
+  subroutine fill(mesh, halo, blocks, n_var, only_faces, unread)
     type(mesh_type), intent(in) :: mesh
     type(halo_type), intent(inout) :: halo
     type(block), intent(inout) :: blocks(:)
     integer, intent(in) :: n_var
-    logical, intent(in), optional :: only_faces
-    logical :: faces
+    logical, intent(in), optional :: only_faces, unread(:)
+    logical :: faces, left_alone(mesh%n_local)
     integer :: t, first(3), last(3), from(3), to(3)
     faces = .false.
     if (present(only_faces)) faces = only_faces
+    left_alone = .false.
+    if (present(unread)) left_alone = unread
     call transfer_slabs(mesh, halo, blocks, n_var, cells_to_give, faces, .false.)
+    call part_where_ghosts_differ(mesh, halo, blocks, n_var, faces, left_alone)
     do t = 1, size(halo%incoming)
       associate (in => halo%incoming(t))
         if (skipped(mesh, in%direction, faces)) cycle
+        if (blocks(in%here)%shares > 0 .or. left_alone(in%here)) cycle
         call ghosts_to_fill(mesh, in%direction, first, last)
         if (in%there > 0) then
           call cells_to_give(mesh, in%direction, from, to)
-          call copy_slab(blocks(in%there)%a, from, to, n_var, first, blocks(in%here)%a)
+          call copy_slab(blocks(holder(blocks, in%there))%a, from, to, n_var, first, blocks(in%here)%a)
         else
           call unpack_slab(blocks(in%here), first, last, n_var, halo%received(halo%position(t):))
         end if
       end associate
     end do
   end subroutine fill
+
+  !> Blocks that share the numbers of another get their own where what comes in differs, bit by bit, from the ghosts they share.
+  subroutine part_where_ghosts_differ(mesh, halo, blocks, n_var, faces, left_alone)
+    type(mesh_type), intent(in) :: mesh
+    type(halo_type), intent(in) :: halo
+    type(block), intent(inout) :: blocks(:)
+    integer, intent(in) :: n_var
+    logical, intent(in) :: faces, left_alone(:)
+    integer :: t, first(3), last(3), from(3), to(3), giver, receiver
+    do t = 1, size(halo%incoming)
+      associate (in => halo%incoming(t))
+        if (blocks(in%here)%shares == 0 .or. left_alone(in%here)) cycle
+        if (skipped(mesh, in%direction, faces)) cycle
+        receiver = blocks(in%here)%shares
+        call ghosts_to_fill(mesh, in%direction, first, last)
+        if (in%there > 0) then
+          giver = holder(blocks, in%there)
+          if (giver == receiver) cycle
+          call cells_to_give(mesh, in%direction, from, to)
+          if (.not. same_slab(blocks(giver)%a, from, to, n_var, first, blocks(receiver)%a)) call own(blocks, in%here)
+        else
+          if (.not. same_as_slab(blocks(receiver), first, last, n_var, halo%received(halo%position(t):))) &
+            call own(blocks, in%here)
+        end if
+      end associate
+    end do
+  end subroutine part_where_ghosts_differ
 
   !> Index of the last node that a brick holds in each direction, the first being 0. layers: see add. With two layers an inactive
   !> direction has one node.
@@ -317,7 +349,7 @@ contains
           if (out%rank /= other) exit
           if (.not. skipped(mesh, out%direction, faces)) then
             call to_give(mesh, out%direction, first, last)
-            call pack_slab(blocks(out%here), first, last, n_var, halo%sent(at:))
+            call pack_slab(blocks(holder(blocks, out%here)), first, last, n_var, halo%sent(at:))
             at = at + n_var*product(last - first + 1)
           end if
         end associate
@@ -399,6 +431,51 @@ contains
       end do
     end do
   end subroutine copy_slab
+
+  !> True if copy_slab would change nothing.
+  pure logical function same_slab(giver, from, to, n_var, first, receiver) result(same)
+    real(wp), allocatable, intent(in) :: giver(:, :, :, :), receiver(:, :, :, :)
+    integer, intent(in) :: from(3), to(3), n_var, first(3)
+    integer :: i, j, k, v, d(3)
+    d = first - from
+    same = .false.
+    do k = from(3), to(3)
+      do j = from(2), to(2)
+        do v = 1, n_var
+          do i = from(1), to(1)
+            if (.not. same_bits(receiver(i + d(1), v, j + d(2), k + d(3)), giver(i, v, j, k))) return
+          end do
+        end do
+      end do
+    end do
+    same = .true.
+  end function same_slab
+
+  !> True if unpack_slab would change nothing.
+  pure logical function same_as_slab(b, first, last, n_var, buffer) result(same)
+    type(block), intent(in) :: b
+    integer, intent(in) :: first(3), last(3), n_var
+    real(wp), intent(in) :: buffer(:)
+    integer :: i, j, k, v, at
+    at = 0
+    same = .false.
+    do k = first(3), last(3)
+      do j = first(2), last(2)
+        do v = 1, n_var
+          do i = first(1), last(1)
+            at = at + 1
+            if (.not. same_bits(b%a(i, v, j, k), buffer(at))) return
+          end do
+        end do
+      end do
+    end do
+    same = .true.
+  end function same_as_slab
+
+  pure logical function same_bits(a, b)
+    real(wp), intent(in) :: a, b
+    same_bits = transfer(a, 0_i8) == transfer(b, 0_i8)
+  end function same_bits
 
   !> Copies a box of a block to a buffer; an unallocated block gives zeros.
   subroutine pack_slab(b, first, last, n_var, buffer)

@@ -1,5 +1,6 @@
 !> What a place has felt of a blast before that entered the scene: peak maps and gauges go on from there.
 module blast_memory
+  use blocks, only: own
   use gauges, only: gauges_type, note_gauges
   use kinds, only: wp
   use mesh, only: mesh_type
@@ -30,6 +31,7 @@ contains
                 x = mesh%brick(mesh%local(b))%origin + ([j, k, l] - 0.5_wp)*mesh%spacing
                 if (.not. reached(blast(i), x)) cycle
                 felt = blast(i)%profile%felt_at(radius(blast(i), x))
+                call own(peaks%map, b)
                 peaks%map(b)%a(j, :, k, l) = felt(:n_peaks)
               end do
             end do

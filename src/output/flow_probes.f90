@@ -3,7 +3,7 @@
 !> are left out and the weights of the others made up to one. Same bits on any number of ranks.
 module flow_probes
   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-  use blocks, only: block
+  use blocks, only: block, holder
   use errors, only: fatal, exit_bad_input
   use kinds, only: wp
   use mesh, only: locate_cell, mesh_type
@@ -57,7 +57,8 @@ contains
   end subroutine place_flow_probes
 
   !> value(column, point): the variables of these columns at each point; not a number where all cells around it are closed.
-  !> state, open: blocks of the flow and of its closed cells (0 closed; unallocated where all are open). To be called by all ranks.
+  !> state, open: blocks of the flow (they may share numbers) and of its closed cells (0 closed; unallocated where all are open). To
+  !> be called by all ranks.
   subroutine read_flow_probes(probes, mesh, state, open, columns, value)
     type(flow_probes_type), intent(in) :: probes
     type(mesh_type), intent(in) :: mesh
@@ -78,7 +79,7 @@ contains
         if (b <= size(open)) then
           if (allocated(open(b)%a)) mine(0, c, p) = mine(0, c, p)*open(b)%a(i(1), 1, i(2), i(3))
         end if
-        mine(1:, c, p) = state(b)%a(i(1), columns, i(2), i(3))
+        mine(1:, c, p) = state(holder(state, b))%a(i(1), columns, i(2), i(3))
       end do
     end do
     call MPI_Allreduce(mine, everyone, size(mine), MPI_DOUBLE_PRECISION, MPI_SUM, world)

@@ -20,6 +20,7 @@ module report
     real(wp) :: mass_drift = 0, momentum_drift = 0, energy_drift = 0
     integer(i8) :: repairs = 0 !< floors and limited states since the start
     integer(i8) :: memory = 0 !< peak memory of all ranks, bytes
+    real(wp) :: awake = 1 !< mean share of the bricks of the flow that were advanced
     real(wp) :: cells = 0 !< cells (and particles) advanced per step
     real(wp) :: wall = 0 !< seconds since the start of this run
   end type report_figures
@@ -67,6 +68,7 @@ contains
     if (left >= 0) line = line//'  left '//duration_text(left)
     line = line//'  drift: mass '//brief(figures%mass_drift)//', momentum '//brief(figures%momentum_drift)// &
       ', energy '//brief(figures%energy_drift)//'  repairs '//str(figures%repairs)//'  '//memory_text(figures%memory)
+    if (figures%awake < 1) line = line//'  awake '//str(100*figures%awake, 3)//'%'
     if (speed > 0) line = line//'  '//str(1e-6_wp*speed, 3)//' Mcells/s'
   end function report_line
 

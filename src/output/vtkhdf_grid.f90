@@ -3,7 +3,7 @@
 !> Format: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
 module vtkhdf_grid
   use, intrinsic :: iso_fortran_env, only: real32
-  use blocks, only: block
+  use blocks, only: block, holder
   use file_system, only: publish_file
   use hdf5_attributes, only: put_attribute
   use hdf5_files, only: hdf5_file, create_file, close_file, create_group, put_slab, put_whole
@@ -69,7 +69,7 @@ contains
     logical, intent(in), optional :: remainder
     real(wp), intent(in), optional :: absent
     real(real32), allocatable :: values(:)
-    integer :: b, width, per_brick
+    integer :: b, h, width, per_brick
     logical :: rest
     real(wp) :: missing
     rest = .false.
@@ -80,8 +80,9 @@ contains
     per_brick = width*product(mesh%brick_cells)
     allocate (values(per_brick*mesh%n_local))
     do b = 1, mesh%n_local
-      if (allocated(blocks(b)%a)) then
-        call collect_cells(mesh%brick_cells, blocks(b), columns, rest, values((b - 1)*per_brick + 1:b*per_brick))
+      h = holder(blocks, b)
+      if (allocated(blocks(h)%a)) then
+        call collect_cells(mesh%brick_cells, blocks(h), columns, rest, values((b - 1)*per_brick + 1:b*per_brick))
       else
         values((b - 1)*per_brick + 1:b*per_brick) = real(missing, real32)
       end if

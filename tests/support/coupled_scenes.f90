@@ -58,7 +58,8 @@ contains
     value_at = huge(1.0_wp)
     do b = 1, scene%mesh%n_local
       i = cell - scene%mesh%brick(scene%mesh%local(b))%location*scene%mesh%brick_cells
-      if (all(i >= 1 .and. i <= scene%mesh%brick_cells)) value_at = scene%flow%w(b, scene%flow%current)%a(i(1), row, i(2), i(3))
+      if (all(i >= 1 .and. i <= scene%mesh%brick_cells)) &
+        value_at = scene%flow%w(scene%flow%holder(b), scene%flow%current)%a(i(1), row, i(2), i(3))
     end do
   end function value_at
 

@@ -25,7 +25,8 @@ contains
     if (present(along)) turn = along - 1
     allocate (profile%x(3, product(scene%mesh%cells)), profile%state(5, product(scene%mesh%cells)))
     do b = 1, scene%mesh%n_local
-      associate (n => scene%mesh%brick_cells, all => scene%mesh%cells, w => scene%flow%w(b, scene%flow%current)%a, &
+      associate (n => scene%mesh%brick_cells, all => scene%mesh%cells, &
+                 w => scene%flow%w(scene%flow%holder(b), scene%flow%current)%a, &
         brick => scene%mesh%brick(scene%mesh%local(b)), layout => scene%flow%layout)
         do k = 1, n(3)
           do j = 1, n(2)
@@ -66,7 +67,7 @@ contains
         do k = 1, n(3)
           do j = 1, n(2)
             do i = 1, n(1)
-              cell = scene%flow%w(b, scene%flow%current)%a(i, :, j, k)
+              cell = scene%flow%w(scene%flow%holder(b), scene%flow%current)%a(i, :, j, k)
               a = cell_fractions(layout, cell)
               all_positive = all_positive .and. all(abs(cell) <= huge(1.0_wp)) .and. all(cell(:layout%n_materials) >= 0) .and. &
                 cell(layout%density()) > 0 .and. all(a >= 0 .and. a <= 1) .and. &

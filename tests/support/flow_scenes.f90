@@ -135,7 +135,7 @@ contains
     value_at = -huge(1.0_wp)
     do b = 1, scene%mesh%n_local
       if (any(scene%mesh%brick(scene%mesh%local(b))%location /= location)) cycle
-      value_at = scene%flow%w(b, scene%flow%current)%a(c(1), row, c(2), c(3))
+      value_at = scene%flow%w(scene%flow%holder(b), scene%flow%current)%a(c(1), row, c(2), c(3))
     end do
   end function value_at
 
