@@ -1,5 +1,6 @@
 !> brisance: what a blast does to a structure.
 program brisance
+  use charge_start, only: start_charges
   use errors, only: exit_done
   use main_loop, only: run_scene
   use material_test, only: run_material_tests, tell_material_tests
@@ -36,6 +37,7 @@ program brisance
       if (is_root() .and. .not. options%quiet) call print_plan(scene)
       if (.not. options%check) then
         call make_scene(scene)
+        if (.not. options%restart) call start_charges(scene)
         call open_records(scene, options, records)
         call run_scene(scene, records, status)
         call close_records(scene, records, status)

@@ -18,9 +18,13 @@ contains
     flush (output_unit)
   end subroutine say
 
-  !> From now on nothing but warnings and errors is printed.
-  subroutine be_quiet()
+  !> From now on nothing but warnings and errors is printed. was: what it was before; silent (default true): what it shall be.
+  subroutine be_quiet(silent, was)
+    logical, intent(in), optional :: silent
+    logical, intent(out), optional :: was
+    if (present(was)) was = quiet
     quiet = .true.
+    if (present(silent)) quiet = silent
   end subroutine be_quiet
 
 end module log

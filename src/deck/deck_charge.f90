@@ -2,7 +2,7 @@
 module deck_charge
   use kinds, only: wp
   use constants, only: unset
-  use deck_keys, only: key_table, word_length
+  use deck_keys, only: key_table, word_length, path_length
   use units, only: of_length, of_mass, of_velocity
   implicit none
   private
@@ -18,10 +18,22 @@ module deck_charge
     real(wp) :: proportions(3) = 1 !< edges of the box, up to a factor
     character(word_length) :: detonation = 'instantaneous' !< 'instantaneous', 'programmed'
     real(wp) :: detonation_speed = unset !< of a programmed one; unset: that of Chapman and Jouguet
+    character(word_length) :: start = 'none' !< 'none', 'spherical', 'cylindrical': geometry of a first run on a fine mesh
+    integer :: start_cells = 0 !< of that mesh in the radius of the charge, 0: chosen
+    real(wp) :: start_stop = unset !< radius at which that run stops; unset: as far as nothing is in the way
+    character(path_length) :: start_file = '' !< what that run is kept in
     integer :: line = 0
+  contains
+    procedure :: is_mapped
   end type charge_group
 
 contains
+
+  !> True if the charge enters the scene as a blast that has been computed before.
+  elemental logical function is_mapped(self)
+    class(charge_group), intent(in) :: self
+    is_mapped = self%start /= 'none'
+  end function is_mapped
 
   subroutine charge_keys(group, table)
     type(charge_group), intent(inout), target :: group
@@ -36,6 +48,10 @@ contains
     call table%add('proportions', group%proportions, more_than=0.0_wp)
     call table%add('detonation', group%detonation, [character(word_length) :: 'instantaneous', 'programmed'])
     call table%add('detonation_speed', group%detonation_speed, of_velocity, more_than=0.0_wp, usual=[500.0_wp, 2e4_wp])
+    call table%add('start', group%start, [character(word_length) :: 'none', 'spherical', 'cylindrical'])
+    call table%add('start_cells', group%start_cells, at_least=0)
+    call table%add('start_stop', group%start_stop, of_length, more_than=0.0_wp)
+    call table%add('start_file', group%start_file)
   end subroutine charge_keys
 
 end module deck_charge

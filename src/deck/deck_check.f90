@@ -8,6 +8,7 @@ module deck_check
   use deck_check_material_test, only: check_material_tests
   use deck_check_shape, only: check_point
   use deck_check_solid, only: check_solid
+  use deck_check_start, only: check_starts
   use deck_keys, only: key_table, key_type, kind_real, word_length
   use deck_problems, only: problem_list, group_place
   use deck_tables, only: find_table
@@ -55,6 +56,7 @@ contains
     call check_material_names(deck, tables, problems)
     if (deck%has_flow) call check_flow(deck, tables, problems, warnings)
     call check_solid(deck, tables, problems, warnings)
+    call check_starts(deck, tables, problems, warnings)
     call check_material_tests(deck, tables, problems, warnings)
     do i = 1, size(deck%gauge)
       call check_gauge(deck, i, tables(find_table(tables, 'gauge', i)), problems)

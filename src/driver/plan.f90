@@ -1,7 +1,8 @@
 !> What a run is going to be, before anything large is allocated: cells, bricks, particles, memory, time step, run time.
 module plan
+  use charge_reach, only: cells_in_charge, charge_radius, reach_of_charge
   use chapman_jouguet, only: chapman_jouguet_state
-  use deck_types, only: deck_type, find_material
+  use deck_types, only: deck_type, find_material, unset
   use equation_of_state, only: eos_type
   use geometry, only: geometry_names
   use kinds, only: wp, i8
@@ -43,6 +44,7 @@ contains
       if (deck%has_flow) call say('flow: '//trim(materials_text(deck))//', scheme '//trim(deck%flow%limiter)//' + '// &
                                   trim(deck%flow%riemann))
       call tell_explosives(deck, labels)
+      call tell_starts(deck, labels)
       if (deck%has_solid) call say('solid: about '//str(nint(particles))//' particles, scheme '//trim(deck%solid%scheme))
       if (deck%has_flow .and. deck%has_solid) call say('coupling: '//trim(deck%coupling%method))
       call say('memory: about '//memory_text(int(bytes, i8)))
@@ -83,6 +85,31 @@ contains
                str(relative_volume, 4))
     end do
   end subroutine tell_explosives
+
+  !> What is done with charges that enter the scene as a blast.
+  subroutine tell_starts(deck, labels)
+    type(deck_type), intent(in) :: deck
+    type(unit_labels_type), intent(in) :: labels
+    character(:), allocatable :: obstacle, line
+    real(wp) :: reach, h
+    integer :: c
+    do c = 1, size(deck%charge)
+      associate (charge => deck%charge(c))
+        if (.not. charge%is_mapped()) cycle
+        call reach_of_charge(deck, c, reach, obstacle)
+        h = charge_radius(deck, c)/cells_in_charge(deck, c)
+        line = '2 cells before it meets '//obstacle
+        if (charge%start_stop > unset) then
+          reach = charge%start_stop
+          line = 'as the deck says'
+        end if
+        call say('start of charge '//str(c)//': '//trim(charge%start)//', '//str(cells_in_charge(deck, c))// &
+                 ' cells in its radius, '//str(ceiling(reach/h))//' of '//str(h, 4)//' '//trim(labels%length)// &
+                 ' to the radius '//str(reach, 5)//' '//trim(labels%length)//', '//line)
+        if (charge%start_file /= '') call say('  kept in '//trim(charge%start_file)//', or taken from there')
+      end associate
+    end do
+  end subroutine tell_starts
 
   !> Cost of each brick, for the share of the ranks: cells of the flow and particles that start there.
   function brick_weights(deck, mesh) result(weight)

@@ -1,6 +1,7 @@
 !> What a run writes while it goes: gauges, history, snapshots, peak maps, restart files, report lines; and when it is to stop.
 module records
   use balance, only: balance_type, take_balance
+  use blast_memory, only: remember_blasts, write_history
   use body_loads, only: sum_loads
   use checkpoint, only: save_run, resume_run
   use csv_series, only: series, close_series, flush_series
@@ -98,6 +99,10 @@ contains
           call place_gauges(records%gauges, scene%mesh)
         end if
         call open_gauges(records%gauges, records%folder)
+        if (allocated(scene%blast)) then
+          call write_history(scene%mesh, scene%blast, records%gauges)
+          call remember_blasts(scene%mesh, scene%blast, records%peaks, records%gauges)
+        end if
         call open_history(records%history, records%folder//'/history.csv', scene, records%labels)
         if (scene%loads%active) then
           call open_loads(records%loads, records%folder//'/loads.csv', scene%solid%body_name(:scene%solid%n_bodies), &

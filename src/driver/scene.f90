@@ -7,6 +7,7 @@ module scene
   use immersed_boundary, only: coupling_type
   use kinds, only: wp
   use mesh, only: mesh_type
+  use radial_profile, only: blast_type
   use solid_state, only: solid_type
   use stages, only: stages_type
   use timers, only: stopwatch
@@ -34,6 +35,7 @@ module scene
     type(solid_type) :: solid
     type(coupling_type) :: coupling
     type(body_loads_type) :: loads
+    type(blast_type), allocatable :: blast(:) !< those that entered the scene at its start
     type(stages_type) :: stages
     type(clock_type) :: clock
     type(stopwatch) :: watch !< wall time by phase

@@ -33,7 +33,7 @@ contains
       charges(c)%shape = shape(c)
       charges(c)%material = material(c)
       allocate (charges(c)%detonator(0))
-      if (.not. is_programmed(deck%charge(c))) cycle
+      if (.not. is_programmed(deck%charge(c)) .or. deck%charge(c)%is_mapped()) cycle ! a mapped one has burnt
       charges(c)%energy = eos(material(c))%jwl%energy_per_volume/eos(material(c))%density &
         - unburnt_state_energy(eos(material(c)), deck%flow%ambient_pressure)
       charges(c)%speed = speed_of(deck%charge(c), eos(material(c)))

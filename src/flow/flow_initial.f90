@@ -30,8 +30,8 @@ module flow_initial
 
 contains
 
-  !> Allocates and fills the flow of this rank. Fatal (bad input) where the deck leaves a cell empty, names a material that does
-  !> not flow, or a charge's placed mass differs from the asked one.
+  !> Allocates and fills the flow of this rank; charges that are mapped later are left out. Fatal (bad input) where the deck leaves a
+  !> cell empty, names a material that does not flow, or a charge's placed mass differs from the asked one.
   subroutine setup_flow(mesh, deck, flow)
     type(mesh_type), intent(in) :: mesh
     type(deck_type), intent(in) :: deck
@@ -65,7 +65,8 @@ contains
       call test_eos(flow, filling, i, density(i), pressure(i))
     end do
     flow%floor_pressure = 1e-9_wp*minval(abs(filling%pressure), abs(filling%pressure) > 0)
-    call fill_bricks(mesh, flow, filling, density, pressure)
+    call fill_bricks(mesh, flow, pack(filling, [spread(.true., 1, size(deck%region)), .not. deck%charge%is_mapped()]), &
+      density, pressure)
     call weigh_charges(mesh, deck, flow, filling)
     flow%burn_total = unburnt_energy(mesh, flow)
     if (any(flow%face == face_ambient)) call set_ambient(deck, flow, filling, density, pressure)
@@ -377,7 +378,7 @@ contains
     real(wp) :: share(size(filling)), placed(size(deck%charge), mesh%n_local), total(size(deck%charge)), center(3), width(3), &
       inside, volume(mesh%brick_cells(1))
     integer :: b, i, j, k, n, c
-    if (size(deck%charge) == 0) return
+    if (all(deck%charge%is_mapped())) return
     n = size(deck%region)
     placed = 0
     do b = 1, mesh%n_local
@@ -400,6 +401,7 @@ contains
     end do
     call reduce_sum(mesh, placed, total)
     do c = 1, size(deck%charge)
+      if (deck%charge(c)%is_mapped()) cycle
       inside = filling(n + c)%density*volume_inside(mesh, filling(n + c)%shape)
       call say('charge '//str(c)//' of '//flow%material_name(filling(n + c)%material)//': mass '//str(deck%charge(c)%mass)// &
         ', '//str(inside)//' of it in the domain, '//str(total(c))//' placed'//dimensions_of(filling(n + c)%shape))

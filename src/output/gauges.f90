@@ -19,7 +19,7 @@ module gauges
   implicit none
   private
   public :: gauges_type, define_gauges, place_gauges, open_gauges, resume_gauges, save_gauges, sample_gauges
-  public :: flush_gauges, close_gauges
+  public :: note_gauges, flush_gauges, close_gauges
 
   integer, parameter :: name_length = 64, column_length = 128
 
@@ -188,23 +188,32 @@ contains
     type(block), intent(in), optional :: state(:), open(:)
     type(layout_type), intent(in), optional :: layout
     type(solid_type), intent(in), optional :: solid
-    real(wp) :: flow(5, gauges%flow%n), value(7), row(size(gauges%column))
-    integer :: g, f, s, place, d
-    logical :: due
+    real(wp) :: flow(5, gauges%flow%n)
+    integer :: d
     if (gauges%n == 0) return
-    due = time >= gauges%next
     if (gauges%flow%n > 0) flow = ieee_value(1.0_wp, ieee_quiet_nan)
     if (present(state) .and. gauges%flow%n > 0) then
       call read_flow_probes(gauges%flow, mesh, state, open, &
         [layout%pressure(), layout%density(), (layout%velocity(d), d=1, 3)], flow)
-      do f = 1, gauges%flow%n
-        if (.not. ieee_is_finite(flow(1, f))) cycle
-        gauges%impulse(f) = gauges%impulse(f) + 0.5_wp*dt*(gauges%overpressure(f) + flow(1, f) - gauges%ambient)
-        gauges%overpressure(f) = flow(1, f) - gauges%ambient
-      end do
     end if
-    if (.not. due) return
-    if (present(solid)) call read_gauges(mesh, solid, gauges%followed)
+    if (present(solid) .and. time >= gauges%next) call read_gauges(mesh, solid, gauges%followed)
+    call note_gauges(gauges, mesh, time, dt, flow)
+  end subroutine sample_gauges
+
+  !> Takes in what the gauges of the flow see (pressure, density, velocity; not a number in a closed cell), a step of dt after the
+  !> last time, and writes a row if one is due. Gauges on the solid show what they were read last.
+  subroutine note_gauges(gauges, mesh, time, dt, flow)
+    type(gauges_type), intent(inout) :: gauges
+    type(mesh_type), intent(in) :: mesh
+    real(wp), intent(in) :: time, dt, flow(:, :)
+    real(wp) :: value(7), row(size(gauges%column))
+    integer :: g, f, s, place
+    do f = 1, gauges%flow%n
+      if (.not. ieee_is_finite(flow(1, f))) cycle
+      gauges%impulse(f) = gauges%impulse(f) + 0.5_wp*dt*(gauges%overpressure(f) + flow(1, f) - gauges%ambient)
+      gauges%overpressure(f) = flow(1, f) - gauges%ambient
+    end do
+    if (time < gauges%next) return
     row(1) = time
     place = 1
     f = 0
@@ -231,7 +240,7 @@ contains
       place = place + size(values)
     end subroutine add
 
-  end subroutine sample_gauges
+  end subroutine note_gauges
 
   !> Sends the rows so far to the disk.
   subroutine flush_gauges(gauges)
