@@ -219,8 +219,8 @@ contains
 
   end subroutine answer_for_gas
 
-  !> Sets the state of a cell to the mean of those face neighbours that were open before. outward: sum of the directions from them to
-  !> the cell.
+  !> Sets the state of a cell to the mean of those face neighbours that were open before. outward: sum of the directions from them
+  !> to the cell.
   subroutine mean_of_neighbours(active, ghost, n_rows, closed_from, i, j, k, before, w, outward)
     logical, intent(in) :: active(3)
     integer, intent(in) :: ghost(3), n_rows, i, j, k
@@ -247,8 +247,8 @@ contains
     if (n > 0) w(i, :n_rows, j, k) = mean/n
   end subroutine mean_of_neighbours
 
-  !> Brings the gas of a cell that a wall has left behind to the speed of the wall, in the direction away from the gas, by a weak wave:
-  !> nothing else tells gas that comes faster than sound how fast its wall is. velocity: of the wall.
+  !> Brings the gas of a cell that a wall has left behind to the speed of the wall, in the direction away from the gas, by a weak
+  !> wave: nothing else tells gas that comes faster than sound how fast its wall is. velocity: of the wall.
   pure subroutine follow_wall(layout, eos, velocity, outward, cell)
     type(layout_type), intent(in) :: layout
     type(eos_type), intent(in) :: eos(:)

@@ -10,7 +10,7 @@ module coupled_scenes
   use text, only: str
   implicit none
   private
-  public :: make_from_text, advance_until, advance_steps, value_at, front_in_row, shock_groups, number
+  public :: make_from_text, advance_until, advance_steps, value_at, shock_groups, number
 
   real(wp), parameter :: gamma = 1.4_wp
 
@@ -65,27 +65,8 @@ contains
     end do
   end function value_at
 
-  !> Position of a front that runs along x: where a quantity of a row of the flow last passes `level` as x grows, linear between the centres of cells.
-  real(wp) function front_in_row(scene, row, level, j) result(x)
-    type(scene_type), intent(in) :: scene
-    integer, intent(in) :: row, j
-    real(wp), intent(in) :: level
-    integer :: i
-    real(wp) :: here, ahead
-    x = scene%mesh%lower(1)
-    ahead = value_at(scene, row, [scene%mesh%cells(1), j, 1])
-    do i = scene%mesh%cells(1) - 1, 1, -1
-      here = value_at(scene, row, [i, j, 1])
-      if (here > level .and. ahead <= level) then
-        x = scene%mesh%lower(1) + scene%mesh%spacing(1)*(i - 0.5_wp + (here - level)/(here - ahead))
-        return
-      end if
-      ahead = here
-    end do
-  end function front_in_row
-
-  !> Groups for gas at rest (density and pressure 1, gamma 1.4, in a material of the name air) and a shock of this Mach number that runs along x
-  !> from x = place on; boundary: further keys of that group. Without units.
+  !> Groups for gas at rest (density and pressure 1, gamma 1.4, in a material of the name air) and a shock of this Mach number that
+  !> runs along x from x = place on; boundary: further keys of that group. Without units.
   function shock_groups(mach, place, boundary) result(text)
     real(wp), intent(in) :: mach, place
     character(*), intent(in) :: boundary

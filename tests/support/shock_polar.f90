@@ -1,6 +1,7 @@
-!> Oblique shocks in an ideal gas, and what becomes of a plane shock that runs onto a wedge: regular reflection of two shocks, which ends
-!> at detachment, or Mach reflection of three (Ben-Dor 2007, Shock Wave Reflection Phenomena, ch. 1 and 3). Seen from the point where
-!> the shocks meet the flow is steady; the Mach stem is taken to be straight and at right angles to the wedge. Angles in radian.
+!> Oblique shocks in an ideal gas, and what becomes of a plane shock that runs onto a wedge: regular reflection of two shocks, which
+!> ends at detachment, or Mach reflection of three (Ben-Dor 2007, Shock Wave Reflection Phenomena, ch. 1 and 3). Seen from the point
+!> where the shocks meet the flow is steady; the Mach stem is taken to be straight and at right angles to the wedge. Angles in
+!> radian.
 module shock_polar
   use constants, only: pi
   use kinds, only: wp

@@ -1,5 +1,5 @@
-!> A free plate between two fluids, struck by a weak pulse of pressure p exp(-t/T) that comes through the first (Taylor 1941, The pressure
-!> and impulse of submarine explosion waves on plates; the second fluid, which he leaves out, adds its impedance).
+!> A free plate between two fluids, struck by a weak pulse of pressure p exp(-t/T) that comes through the first (Taylor 1941, The
+!> pressure and impulse of submarine explosion waves on plates; the second fluid, which he leaves out, adds its impedance).
 module struck_plate
   use kinds, only: wp
   implicit none
@@ -8,8 +8,8 @@ module struck_plate
 
 contains
 
-  !> Velocity at time t after the pulse met the plate. mass: per area; front, back: density times sound speed of the fluids; mass/(front +
-  !> back) must not be the duration T of the pulse.
+  !> Velocity at time t after the pulse met the plate. mass: per area; front, back: density times sound speed of the fluids;
+  !> mass/(front + back) must not be the duration T of the pulse.
   elemental real(wp) function plate_velocity(t, pressure, duration, mass, front, back) result(velocity)
     real(wp), intent(in) :: t, pressure, duration, mass, front, back
     real(wp) :: ratio
