@@ -10,6 +10,8 @@ module immersed_boundary
   use blocks, only: block, allocate_cells
   use cell_functions, only: cell_frame
   use cell_types, only: classify_cells, mirror_ghosts, fluid_cell, interface_cell, inside_cell
+  use equation_of_state, only: eos_type
+  use flow_layout, only: layout_type
   use flow_state, only: flow_type
   use halo, only: halo_type, fill
   use interface_cells, only: interface_list, list_interface, force_velocity, add_wall_impulse, &
@@ -18,7 +20,7 @@ module immersed_boundary
   use light_walls, only: ease_light_walls
   use loose_particles, only: list_loose, drag_loose
   use mesh, only: mesh_type
-  use mixture, only: cell_energies, close_cell
+  use mixture, only: cell_energies, cell_fractions, close_cell
   use reductions, only: any_rank, reduce_sum
   use sleeping_bricks, only: is_asleep, wake
   use solid_cover, only: cover_cells, smooth_part, wall_normals
@@ -221,7 +223,7 @@ contains
     integer, intent(in) :: b
     integer :: i, j, k
     logical :: was_inside, is_inside
-    real(wp) :: cell(flow%layout%n_rows)
+    real(wp) :: cell(flow%layout%n_rows), outward(3)
     associate (w => flow%w(b, flow%current)%a, before => coupling%kind_before(b)%a, now => coupling%kind(b)%a, &
                n => mesh%brick_cells)
       do k = 1, n(3)
@@ -235,10 +237,11 @@ contains
               coupling%partial(booked_covered, b) = coupling%partial(booked_covered, b) + 1
             else
               call mean_of_neighbours(mesh%active, mesh%ghost, flow%layout%n_rows, coupling%closed_from, i, j, k, &
-                                      before(:, 1, :, :), w)
-              cell = w(i, :, j, k)
+                                      before(:, 1, :, :), w, outward)
+              cell = w(i, :flow%layout%n_rows, j, k)
               call close_cell(flow%layout, flow%eos, cell)
-              w(i, :, j, k) = cell
+              if (coupling%moving_wall) call follow_wall(flow%layout, flow%eos, flow%wall(b)%a(i, 1:3, j, k), outward, cell)
+              w(i, :flow%layout%n_rows, j, k) = cell
               call book_gas(i, j, k, 1.0_wp)
               coupling%partial(booked_uncovered, b) = coupling%partial(booked_uncovered, b) + 1
             end if
@@ -266,16 +269,19 @@ contains
 
   end subroutine answer_for_gas
 
-  !> Sets the state of a cell to the mean of those face neighbours that were open before.
-  subroutine mean_of_neighbours(active, ghost, n_rows, closed_from, i, j, k, before, w)
+  !> Sets the state of a cell to the mean of those face neighbours that were open before. outward: sum of the directions from them
+  !> to the cell.
+  subroutine mean_of_neighbours(active, ghost, n_rows, closed_from, i, j, k, before, w, outward)
     logical, intent(in) :: active(3)
     integer, intent(in) :: ghost(3), n_rows, i, j, k
     real(wp), intent(in) :: closed_from
     real(wp), intent(in) :: before(1 - ghost(1):, 1 - ghost(2):, 1 - ghost(3):)
     real(wp), intent(inout) :: w(1 - ghost(1):, :, 1 - ghost(2):, 1 - ghost(3):)
+    real(wp), intent(out) :: outward(3)
     real(wp) :: mean(n_rows)
     integer :: d, side, n, c(3)
     mean = 0
+    outward = 0
     n = 0
     do d = 1, 3
       if (.not. active(d)) cycle
@@ -284,11 +290,37 @@ contains
         c(d) = c(d) + side
         if (before(c(1), c(2), c(3)) > closed_from) cycle
         mean = mean + w(c(1), :n_rows, c(2), c(3))
+        outward(d) = outward(d) - side
         n = n + 1
       end do
     end do
     if (n > 0) w(i, :n_rows, j, k) = mean/n
   end subroutine mean_of_neighbours
+
+  !> Brings the gas of a cell that a wall has left behind to the speed of the wall, in the direction away from the gas, by a weak
+  !> wave: nothing else tells gas that comes faster than sound how fast its wall is. velocity: of the wall.
+  pure subroutine follow_wall(layout, eos, velocity, outward, cell)
+    type(layout_type), intent(in) :: layout
+    type(eos_type), intent(in) :: eos(:)
+    real(wp), intent(in) :: velocity(3), outward(3)
+    real(wp), intent(inout) :: cell(:)
+    real(wp) :: direction(3), lag, density, sound, fall, above
+    integer :: n
+    n = layout%n_materials
+    direction = outward/max(norm2(outward), tiny(1.0_wp))
+    associate (v => cell(layout%velocity_row:layout%velocity_row + 2), p => cell(layout%pressure_row))
+      lag = sum((velocity - v)*direction)
+      density = cell(layout%density_row)
+      sound = cell(layout%sound_speed_row)
+      above = p - maxval(eos(:n)%lowest_pressure(cell(:n)/cell_fractions(layout, cell)))
+      fall = density*sound*lag
+      if (fall > 0) fall = fall/(1 + fall/max(above, tiny(p))) ! leaves the gas some pressure
+      v = v + lag*direction
+      p = p - fall
+      cell(:n) = cell(:n)*(1 - fall/(density*sound**2))
+    end associate
+    call close_cell(layout, eos, cell)
+  end subroutine follow_wall
 
   !> Velocity of the solid in the interface cells, from the nodes (eq. 29); where walls move, the flow gets it with their normals.
   !> dt: of the step.

@@ -7,9 +7,12 @@ module coupled_scenes
   use main_loop, only: advance_scene
   use scene, only: scene_type
   use setup, only: lay_out_scene, make_scene
+  use text, only: str
   implicit none
   private
-  public :: make_from_text, advance_until, advance_steps, value_at
+  public :: make_from_text, advance_until, advance_steps, value_at, shock_groups, number
+
+  real(wp), parameter :: gamma = 1.4_wp
 
   character(*), parameter, public :: nl = new_line('a')
 
@@ -62,5 +65,30 @@ contains
         value_at = scene%flow%w(scene%flow%holder(b), scene%flow%current)%a(i(1), row, i(2), i(3))
     end do
   end function value_at
+
+  !> Groups for gas at rest (density and pressure 1, gamma 1.4, in a material of the name air) and a shock of this Mach number that
+  !> runs along x from x = place on; boundary: further keys of that group. Without units.
+  function shock_groups(mach, place, boundary) result(text)
+    real(wp), intent(in) :: mach, place
+    character(*), intent(in) :: boundary
+    character(:), allocatable :: text
+    character(:), allocatable :: density, pressure, velocity
+    density = number((gamma + 1)*mach**2/((gamma - 1)*mach**2 + 2))
+    pressure = number(1 + 2*gamma/(gamma + 1)*(mach**2 - 1))
+    velocity = number(2*sqrt(gamma)/(gamma + 1)*(mach - 1/mach))
+    text = "&material name='air', eos='ideal_gas', gamma=1.4, density=1.0 /"//nl// &
+      "&boundary x_low='inflow', inflow_material='air', inflow_density="//density//", inflow_pressure="//pressure// &
+      ", inflow_velocity="//velocity//",0,0, "//boundary//" /"//nl// &
+      "&region shape='all', material='air', density=1.0, pressure=1.0 /"//nl// &
+      "&region shape='half_space', material='air', density="//density//", pressure="//pressure//", velocity="//velocity// &
+      ",0,0, point="//number(place)//",0,0, normal=1,0,0 /"//nl
+  end function shock_groups
+
+  !> A number with every bit, for a deck.
+  function number(value)
+    real(wp), intent(in) :: value
+    character(:), allocatable :: number
+    number = str(value, 17)
+  end function number
 
 end module coupled_scenes

@@ -47,7 +47,8 @@ def draw_slice(axes, flow, name, axis=None, position=0.0, mirror=None, wanted=No
                 share, _ = unfolded(share, box, first, second, mirror)
                 axes.contour(*cell_centres(share, extent), share, levels=[0.5], colors="white", linewidths=0.7, alpha=0.8)
     if solid is not None:
-        draw_outline(axes, solid, across, place, first, second, mirror, min(flow.spacing[first], flow.spacing[second]))
+        draw_outline(axes, solid, across, place if across in flow.active else None, first, second, mirror,
+                     min(flow.spacing[first], flow.spacing[second]))
     elif "cell_type" in flow.data:
         draw_closed_cells(axes, flow, axis, position, box, first, second, mirror)
     axes.set_xlim(extent[0], extent[1])
@@ -65,12 +66,14 @@ def cell_centres(values, extent):
 
 
 def draw_outline(axes, solid, across, place, first, second, mirror, cell):
-    """The particles near the plane in grey, with a line round them. Each covers half a cell, so that a sound body has no gaps."""
+    """The particles near the plane in grey, with a line round them. Each covers half a cell, so that a sound body has no gaps.
+
+    place: of the plane; None: all particles, in a scene that has no cells across it."""
     if solid.n == 0:
         return
     size = solid.size()
     points, _ = mirrored(solid.position, solid.position[:, 0], mirror)
-    near = points[np.abs(points[:, across] - place) <= max(0.6 * cell, size)]
+    near = points if place is None else points[np.abs(points[:, across] - place) <= max(0.6 * cell, size)]
     if len(near) == 0:
         return
     point = max(size, cell / 3)
