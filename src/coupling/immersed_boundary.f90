@@ -25,7 +25,8 @@ module immersed_boundary
   use solid_state, only: solid_type, frame_of
   implicit none
   private
-  public :: start_coupling, restore_coupling, immerse_solid, find_wall_velocity, force_first_state, force_stage, collect_force
+  public :: start_coupling, restore_coupling, release_coupling, immerse_solid, hold_solid, find_wall_velocity, force_first_state, &
+    force_stage, collect_force
 
   integer, parameter, public :: booked_impulse = 1 !< first of 3: momentum given to the solid
   integer, parameter, public :: booked_reference = 4 !< first of 3: impulse of the reference pressure on closed faces
@@ -92,6 +93,12 @@ contains
       call close_cells(mesh, coupling%kind(b), coupling%closed_from, flow%open(b), flow%wall_impulse(b))
     end do
   end subroutine restore_coupling
+
+  !> Gives the memory of a coupling back that is needed no more; the books stay.
+  subroutine release_coupling(coupling)
+    type(coupling_type), intent(inout) :: coupling
+    deallocate (coupling%occupancy, coupling%kind, coupling%kind_before, coupling%list, coupling%force, coupling%solid_part)
+  end subroutine release_coupling
 
   !> Finds the cell types from the particles, closes the cells inside, and lists the interface.
   subroutine immerse_solid(mesh, halo, solid, flow, coupling)
@@ -263,6 +270,18 @@ contains
     end do
     if (coupling%moving_wall) call set_walls(mesh, halo, flow, coupling)
   end subroutine find_wall_velocity
+
+  !> In place of immerse_solid and find_wall_velocity where the solid has not moved since: a new step begins.
+  subroutine hold_solid(flow, coupling)
+    type(flow_type), intent(inout) :: flow
+    type(coupling_type), intent(inout) :: coupling
+    integer :: b
+    coupling%partial = 0
+    do b = 1, size(coupling%list)
+      coupling%list(b)%impulse = 0
+      if (allocated(flow%wall_impulse(b)%a)) flow%wall_impulse(b)%a = 0
+    end do
+  end subroutine hold_solid
 
   !> Velocities and normals of walls that move, for the flow.
   subroutine set_walls(mesh, halo, flow, coupling)

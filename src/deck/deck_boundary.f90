@@ -8,8 +8,8 @@ module deck_boundary
   private
   public :: boundary_keys
 
-  character(word_length), parameter :: flow_faces(4) = &
-    [character(word_length) :: 'symmetry', 'outflow', 'inflow', 'periodic']
+  character(word_length), parameter :: flow_faces(5) = &
+    [character(word_length) :: 'symmetry', 'outflow', 'ambient', 'inflow', 'periodic']
   character(word_length), parameter :: solid_faces(4) = &
     [character(word_length) :: '', 'free', 'symmetry', 'clamped']
 

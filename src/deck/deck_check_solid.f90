@@ -27,6 +27,7 @@ contains
     integer :: i
     call check_numerics(deck, tables(find_table(tables, 'solid', 1)), problems)
     call check_loads(deck, tables(find_table(tables, 'output', 1)), problems)
+    call check_stages(deck, tables(find_table(tables, 'stages', 1)), problems)
     do i = 1, size(deck%body)
       call check_body(deck, deck%body(i), i, tables(find_table(tables, 'body', i)), problems, warnings)
     end do
@@ -68,6 +69,19 @@ contains
     if (.not. (deck%has_flow .and. deck%has_solid) .or. deck%coupling%method == 'none') &
       call problems%add_at_key(table, 'loads', 'there is no load without a flow, a body and a coupling')
   end subroutine check_loads
+
+  !> Stages are those of a scene in which flow and solid meet.
+  subroutine check_stages(deck, table, problems)
+    type(deck_type), intent(in) :: deck
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems
+    character(*), parameter :: alone = 'there is no flow that acts on a solid, so none whose load could fade'
+    if (deck%stages%solid_end /= 'never' .and. .not. deck%has_solid) call problems%add_at_key(table, 'solid_end', &
+      'the deck has no &body that could come to rest')
+    if (deck%has_flow .and. deck%has_solid .and. deck%coupling%method /= 'none') return
+    if (deck%stages%flow_end /= 'never') call problems%add_at_key(table, 'flow_end', alone)
+    if (deck%stages%flow_end_time > unset) call problems%add_at_key(table, 'flow_end_time', alone)
+  end subroutine check_stages
 
   !> Rigid bodies: what only they have, and what they lack.
   subroutine check_rigid(deck, body, i, table, problems, warnings)

@@ -18,15 +18,16 @@ module deck_tables
   use deck_clamp, only: clamp_keys
   use deck_contact, only: contact_keys
   use deck_coupling, only: coupling_keys
+  use deck_stages, only: stages_keys
   use deck_gauge, only: gauge_keys
   use deck_output, only: output_keys
   implicit none
   private
   public :: allocate_groups, group_count, group_number, make_table, make_tables, find_table, may_repeat
 
-  character(16), parameter, public :: group_names(19) = [character(16) :: 'run', 'mesh', 'boundary', 'flow', 'material', &
+  character(16), parameter, public :: group_names(20) = [character(16) :: 'run', 'mesh', 'boundary', 'flow', 'material', &
     'region', 'charge', 'detonator', 'solid', 'body', 'hole', 'reinforcement', 'heterogeneity', 'clamp', 'contact', &
-    'coupling', 'gauge', 'output', 'material_test'] !< in deck order
+    'coupling', 'stages', 'gauge', 'output', 'material_test'] !< in deck order
 
 contains
 
@@ -57,7 +58,7 @@ contains
     integer, intent(in) :: count(size(group_names))
     allocate (deck%material(count(5)), deck%region(count(6)), deck%charge(count(7)), deck%detonator(count(8)))
     allocate (deck%body(count(10)), deck%hole(count(11)), deck%reinforcement(count(12)), deck%heterogeneity(count(13)))
-    allocate (deck%clamp(count(14)), deck%contact(count(15)), deck%gauge(count(17)), deck%material_test(count(19)))
+    allocate (deck%clamp(count(14)), deck%contact(count(15)), deck%gauge(count(18)), deck%material_test(count(20)))
   end subroutine allocate_groups
 
   !> How many groups of this name the deck type holds (1 for one that may not be repeated, whether the file has it or not).
@@ -132,6 +133,8 @@ contains
       call contact_keys(deck%contact(i), table)
     case ('coupling')
       call coupling_keys(deck%coupling, table)
+    case ('stages')
+      call stages_keys(deck%stages, table)
     case ('gauge')
       call gauge_keys(deck%gauge(i), table)
     case ('output')

@@ -18,6 +18,7 @@ module deck_types
   use deck_clamp, only: clamp_group
   use deck_contact, only: contact_group
   use deck_coupling, only: coupling_group
+  use deck_stages, only: stages_group
   use deck_gauge, only: gauge_group
   use deck_output, only: output_group
   use text, only: lowercase
@@ -27,7 +28,7 @@ module deck_types
   public :: run_group, mesh_group, boundary_group, flow_group, material_group, region_group, charge_group, &
     detonator_group, solid_group, material_test_group
   public :: body_group, hole_group, reinforcement_group, heterogeneity_group, clamp_group, contact_group, coupling_group, &
-    gauge_group, output_group
+    stages_group, gauge_group, output_group
   public :: find_material, find_body
 
   !> Everything that a run is asked to do. All numbers are in the unit system run%units; repeated groups stand in the
@@ -51,6 +52,7 @@ module deck_types
     type(clamp_group), allocatable :: clamp(:)
     type(contact_group), allocatable :: contact(:)
     type(coupling_group) :: coupling
+    type(stages_group) :: stages
     type(gauge_group), allocatable :: gauge(:)
     type(output_group) :: output
     type(material_test_group), allocatable :: material_test(:)

@@ -40,7 +40,11 @@ contains
     integer :: m, e, n, d
     real(wp), allocatable :: books(:)
     if (scene%has_flow) then
-      balance%flow = sum_flow(scene%mesh, scene%flow)
+      if (scene%stages%flow_over) then
+        balance%flow = scene%stages%last_flow
+      else
+        balance%flow = sum_flow(scene%mesh, scene%flow)
+      end if
       m = scene%flow%layout%momentum_flux
       e = scene%flow%layout%energy_flux
       n = scene%flow%n_materials

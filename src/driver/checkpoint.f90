@@ -13,11 +13,13 @@ module checkpoint
   use restart_fields, only: restart_put_blocks, restart_get_blocks, restart_put_table, restart_get_table
   use restart_files, only: restart_file, create_restart, open_restart, close_restart, restart_has
   use restart_particles, only: restart_put_particles, restart_get_particles
-  use restart_values, only: restart_put, restart_get
+  use restart_values, only: restart_put, restart_get, restart_count
   use rigid_bodies, only: pack_rigid, unpack_rigid
   use scene, only: scene_type
   use sleeping_bricks, only: is_asleep, share_state, wake
   use solid_step, only: project_solid
+  use stage_changes, only: release_flow
+  use stages, only: pack_stages, unpack_stages
   implicit none
   private
   public :: save_run, resume_run
@@ -38,10 +40,10 @@ contains
     call restart_put(file, 'flow_steps', scene%clock%n_flow_steps)
     call restart_put(file, 'solid_steps', scene%clock%n_solid_steps)
     call restart_put(file, 'first_balance', first)
+    call restart_put(file, 'stages', pack_stages(scene%stages))
     associate (mesh => scene%mesh, one => [1, 1, 1])
       if (scene%has_flow) then
-        call restart_put_blocks(file, 'flow', scene%flow%w(:mesh%n_local, scene%flow%current), one, mesh%brick_cells)
-        call put_sleepers(file, scene%flow, mesh%n_local)
+        if (scene%flow_runs()) call put_flow(file, mesh, scene%flow)
         call restart_put_table(file, 'flow_books', [(size(scene%flow%books(:, :, b)), b=1, mesh%n_local)], &
                                reshape(scene%flow%books, [size(scene%flow%books)]))
         call MPI_Allreduce(scene%flow%repairs%count, repairs, size(repairs), MPI_INTEGER8, MPI_SUM, world)
@@ -54,7 +56,8 @@ contains
                                reshape(scene%solid%books, [size(scene%solid%books)]))
       end if
       if (scene%coupled) then
-        call restart_put_blocks(file, 'cell_type', scene%coupling%kind, 1 - mesh%ghost, mesh%brick_cells + mesh%ghost)
+        if (scene%flow_runs()) &
+          call restart_put_blocks(file, 'cell_type', scene%coupling%kind, 1 - mesh%ghost, mesh%brick_cells + mesh%ghost)
         call restart_put(file, 'coupling_books', scene%coupling%books)
         if (scene%loads%active) call restart_put_table(file, 'loads', [(size(scene%loads%impulse(:, :, b)), b=1, mesh%n_local)], &
                                                        reshape(scene%loads%impulse, [size(scene%loads%impulse)]))
@@ -83,9 +86,14 @@ contains
     call restart_get(file, 'flow_steps', scene%clock%n_flow_steps)
     call restart_get(file, 'solid_steps', scene%clock%n_solid_steps)
     call restart_get(file, 'first_balance', first)
+    allocate (values(restart_count(file, 'stages')))
+    call restart_get(file, 'stages', values)
+    call unpack_stages(values, scene%stages)
+    deallocate (values)
+    if (scene%stages%flow_over) call release_flow(scene)
     associate (mesh => scene%mesh, one => [1, 1, 1])
       if (scene%has_flow) then
-        call get_flow(file, mesh, scene%flow)
+        if (scene%flow_runs()) call get_flow(file, mesh, scene%flow)
         call restart_get_table(file, 'flow_books', counts, values)
         scene%flow%books = reshape(values, shape(scene%flow%books))
         call restart_get(file, 'flow_repairs', scene%flow%repairs%count)
@@ -105,9 +113,11 @@ contains
         call project_solid(mesh, scene%halo, scene%solid)
       end if
       if (scene%coupled) then
-        call restart_get_blocks(file, 'cell_type', scene%coupling%kind, 1 - mesh%ghost, mesh%brick_cells + mesh%ghost)
         call restart_get(file, 'coupling_books', scene%coupling%books)
-        call restore_coupling(mesh, scene%flow, scene%coupling)
+        if (scene%flow_runs()) then
+          call restart_get_blocks(file, 'cell_type', scene%coupling%kind, 1 - mesh%ghost, mesh%brick_cells + mesh%ghost)
+          call restore_coupling(mesh, scene%flow, scene%coupling)
+        end if
         if (scene%loads%active) then
           call restart_get_table(file, 'loads', counts, values)
           scene%loads%impulse = reshape(values, shape(scene%loads%impulse))
@@ -126,22 +136,23 @@ contains
     call close_restart(file)
   end subroutine resume_run
 
-  !> Writes the common states of the bricks that sleep, which have no cells in the file.
-  subroutine put_sleepers(file, flow, n_local)
+  !> Writes the flow: of bricks that sleep only their state.
+  subroutine put_flow(file, mesh, flow)
     type(restart_file), intent(inout) :: file
+    type(mesh_type), intent(in) :: mesh
     type(flow_type), intent(in) :: flow
-    integer, intent(in) :: n_local
     real(wp), allocatable :: states(:)
-    integer :: b, counts(n_local)
+    integer :: b, counts(mesh%n_local)
+    call restart_put_blocks(file, 'flow', flow%w(:mesh%n_local, flow%current), [1, 1, 1], mesh%brick_cells)
     allocate (states(0))
-    do b = 1, n_local
-      counts(b) = 0
+    counts = 0
+    do b = 1, mesh%n_local
       if (.not. is_asleep(flow, b)) cycle
       counts(b) = flow%layout%n_rows
       states = [states, flow%w(flow%holder(b), flow%current)%a(1, :, 1, 1)]
     end do
     call restart_put_table(file, 'flow_asleep', counts, states)
-  end subroutine put_sleepers
+  end subroutine put_flow
 
   !> Reads the flow: bricks that slept when the file was written have only their state in it. In files from before there was sleep
   !> all are awake.

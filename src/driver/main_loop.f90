@@ -3,12 +3,14 @@ module main_loop
   use body_loads, only: gather_loads
   use burn, only: end_burn
   use flow_step, only: advance_stage, accept_step
-  use immersed_boundary, only: immerse_solid, find_wall_velocity, force_first_state, force_stage, collect_force
+  use immersed_boundary, only: immerse_solid, find_wall_velocity, force_first_state, force_stage, collect_force, hold_solid
   use kinds, only: wp
   use records, only: records_type, record_step, stop_if_asked
   use rigid_bodies, only: load_rigid
   use scene, only: scene_type
   use solid_step, only: advance_solid
+  use stage_changes, only: review_stages
+  use stages, only: note_load
   use time_step, only: choose_time_step, flow_part
   implicit none
   private
@@ -37,20 +39,29 @@ contains
     scene%flow%time = scene%clock%time
     call end_burn(scene%flow)
     call choose_time_step(scene, next_event)
-    if (scene%coupled) call meet_solid(scene)
-    if (scene%has_flow) call advance_flow(scene)
-    if (scene%loads%active) call note_loads(scene)
-    if (scene%has_solid) call advance_structure(scene)
+    if (scene%flow_runs()) then
+      if (scene%coupled) call meet_solid(scene)
+      call advance_flow(scene)
+      if (scene%coupled) call note_loads(scene)
+    end if
+    if (scene%solid_runs()) call advance_structure(scene)
     scene%clock%time = scene%clock%time + scene%clock%dt
     scene%clock%step = scene%clock%step + 1
+    call review_stages(scene)
   end subroutine advance_scene
 
-  !> Cell types from the particles, answers for covered and uncovered gas, velocity of the solid where it meets the flow.
+  !> Cell types from the particles, answers for covered and uncovered gas, velocity of the solid where it meets the flow. A solid
+  !> that does not move is met once.
   subroutine meet_solid(scene)
     type(scene_type), intent(inout) :: scene
     call scene%watch%start('coupling')
-    call immerse_solid(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
-    call find_wall_velocity(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
+    if (scene%stages%solid_met .and. .not. scene%solid_runs()) then
+      call hold_solid(scene%flow, scene%coupling)
+    else
+      call immerse_solid(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
+      call find_wall_velocity(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
+      scene%stages%solid_met = .true.
+    end if
     call scene%watch%stop('coupling')
   end subroutine meet_solid
 
@@ -82,9 +93,12 @@ contains
   !> What the bodies felt in the step, while the particles are still where they felt it.
   subroutine note_loads(scene)
     type(scene_type), intent(inout) :: scene
+    real(wp) :: time
     call scene%watch%start('loads')
-    call gather_loads(scene%loads, scene%mesh, scene%solid, scene%coupling%list, scene%coupling%face, &
-                      scene%clock%time + scene%clock%dt, scene%clock%dt)
+    time = scene%clock%time + scene%clock%dt
+    call note_load(scene%stages, scene%mesh, scene%coupling, time, scene%clock%dt)
+    if (scene%loads%active) call gather_loads(scene%loads, scene%mesh, scene%solid, scene%coupling%list, scene%coupling%face, &
+                                              time, scene%clock%dt)
     call scene%watch%stop('loads')
   end subroutine note_loads
 
@@ -92,15 +106,17 @@ contains
   subroutine advance_structure(scene)
     type(scene_type), intent(inout) :: scene
     integer :: part
+    logical :: loaded
     real(wp) :: dt
     call scene%watch%start('solid')
     scene%solid%step = scene%clock%step
     scene%solid%time = scene%clock%time
     scene%solid%limiter = scene%clock%limiter
     dt = scene%clock%dt/scene%clock%solid_steps
-    if (scene%coupled .and. scene%solid%rigid_field > 0) call load_rigid(scene%mesh, scene%solid, scene%coupling%force)
+    loaded = scene%coupled .and. scene%flow_runs()
+    if (loaded .and. scene%solid%rigid_field > 0) call load_rigid(scene%mesh, scene%solid, scene%coupling%force)
     do part = 1, scene%clock%solid_steps
-      if (scene%coupled) then
+      if (loaded) then
         call advance_solid(scene%mesh, scene%halo, scene%solid, dt, scene%coupling%force)
       else
         call advance_solid(scene%mesh, scene%halo, scene%solid, dt)

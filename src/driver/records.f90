@@ -54,7 +54,8 @@ module records
     real(wp) :: restart_seconds = 1, step_seconds = 0 !< wall time of the longest restart file and step so far
     real(wp) :: wall_at_step = 0
     integer :: reason = go_on
-    logical :: reached_end = .false. !< the end time or the last step of the deck
+    logical :: reached_end = .false. !< the end time or the last step of the deck, or nothing is left to compute
+    logical :: nothing_left = .false.
   end type records_type
 
 contains
@@ -160,8 +161,11 @@ contains
     integer, parameter :: steps_between_looks = 10
     status = exit_done
     finished = scene%clock%time >= scene%clock%end_time .or. scene%clock%step >= records%last_step
+    records%nothing_left = .not. (scene%flow_runs() .or. scene%has_solid .and. .not. scene%stages%solid_over)
+    finished = finished .or. records%nothing_left
     if (finished) then
-      records%reached_end = scene%clock%time >= scene%deck%run%end_time .or. scene%clock%step >= scene%deck%run%max_steps
+      records%reached_end = records%nothing_left .or. &
+        scene%clock%time >= scene%deck%run%end_time .or. scene%clock%step >= scene%deck%run%max_steps
       return
     end if
     records%reason = stop_reason(scene%deck%run%wall_limit, 2*records%restart_seconds + 3*records%step_seconds, records%folder, &
@@ -197,6 +201,7 @@ contains
     figures%repairs = all_repairs(scene)
     figures%memory = peak_memory()
     figures%ended_by = 'end time'
+    if (records%nothing_left) figures%ended_by = 'rest'
     if (records%reason /= go_on) figures%ended_by = trim(reason_name(records%reason))
     if (records%reason == go_on .and. .not. records%reached_end) figures%ended_by = 'option'
     call write_summary(scene, balance, figures, records%fragments, records%folder//'/summary.json')
@@ -212,16 +217,16 @@ contains
     type(records_type), intent(inout) :: records
     real(wp), intent(in) :: dt
     associate (flow => scene%flow, time => scene%clock%time)
-      if (scene%has_flow .and. scene%has_solid) then
+      if (scene%flow_runs() .and. scene%has_solid) then
         call sample_gauges(records%gauges, scene%mesh, time, dt, flow%w(:, flow%current), flow%open, flow%layout, &
                            scene%solid)
-      else if (scene%has_flow) then
+      else if (scene%flow_runs()) then
         call sample_gauges(records%gauges, scene%mesh, time, dt, flow%w(:, flow%current), flow%open, flow%layout)
       else
         call sample_gauges(records%gauges, scene%mesh, time, dt, solid=scene%solid)
       end if
-      if (allocated(records%peaks%map)) call update_peaks(records%peaks, scene%mesh, flow%w(:, flow%current), flow%open, &
-                                                          flow%layout%pressure(), time, dt)
+      if (allocated(records%peaks%map) .and. scene%flow_runs()) call update_peaks(records%peaks, scene%mesh, &
+        flow%w(:, flow%current), flow%open, flow%layout%pressure(), time, dt)
     end associate
   end subroutine measure
 
@@ -231,7 +236,7 @@ contains
     if (records%last_snapshot_step == scene%clock%step) return
     records%last_snapshot_step = scene%clock%step
     associate (flow => scene%flow, solid => scene%solid, clock => scene%clock)
-      if (scene%has_flow .and. scene%deck%output%flow_snapshots) then
+      if (scene%flow_runs() .and. scene%deck%output%flow_snapshots) then
         if (scene%coupled) then
           call put_flow_snapshot(records%snapshots, scene%mesh, clock%time, clock%step, flow%w(:, flow%current), flow%layout, &
                                  flow%name, scene%coupling%kind)
@@ -323,8 +328,8 @@ contains
     figures%repairs = sum(all_repairs(scene))
     figures%memory = peak_memory()
     figures%cells = 0
-    if (scene%has_flow) figures%cells = product(real(scene%mesh%cells, wp))*max(scene%clock%flow_steps, 1)
-    if (scene%has_solid) figures%cells = figures%cells + sum(balance%solid%count)*scene%clock%solid_steps
+    if (scene%flow_runs()) figures%cells = product(real(scene%mesh%cells, wp))*max(scene%clock%flow_steps, 1)
+    if (scene%solid_runs()) figures%cells = figures%cells + sum(balance%solid%count)*scene%clock%solid_steps
     figures%awake = awake_share(scene%flow)
     figures%wall = wall_seconds()
     call say(report_line(figures, records%pace))

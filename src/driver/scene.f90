@@ -8,6 +8,7 @@ module scene
   use kinds, only: wp
   use mesh, only: mesh_type
   use solid_state, only: solid_type
+  use stages, only: stages_type
   use timers, only: stopwatch
   implicit none
   private
@@ -33,8 +34,26 @@ module scene
     type(solid_type) :: solid
     type(coupling_type) :: coupling
     type(body_loads_type) :: loads
+    type(stages_type) :: stages
     type(clock_type) :: clock
     type(stopwatch) :: watch !< wall time by phase
+  contains
+    procedure :: flow_runs
+    procedure :: solid_runs
   end type scene_type
+
+contains
+
+  !> There is a flow, and it is not over.
+  pure logical function flow_runs(self)
+    class(scene_type), intent(in) :: self
+    flow_runs = self%has_flow .and. .not. self%stages%flow_over
+  end function flow_runs
+
+  !> There is a solid that can move, and it neither waits nor rests.
+  pure logical function solid_runs(self)
+    class(scene_type), intent(in) :: self
+    solid_runs = self%has_solid .and. .not. (self%stages%solid_waits .or. self%stages%solid_over)
+  end function solid_runs
 
 end module scene

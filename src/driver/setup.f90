@@ -15,6 +15,7 @@ module setup
   use scene, only: scene_type
   use solid_setup, only: setup_solid
   use solid_step, only: project_solid
+  use stages, only: start_stages
   use text, only: str, lowercase
   use units, only: unit_labels, unit_labels_type
   implicit none
@@ -77,6 +78,7 @@ contains
       call immerse_solid(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
       if (scene%deck%output%loads) call start_loads(scene%loads, scene%mesh, scene%solid, 0.01_wp*abs(ambient))
     end if
+    call start_stages(scene%stages, scene%deck%stages, scene%solid, scene%coupled)
   end subroutine make_scene
 
   !> Tells what the bodies came to; shapes of the same name and material, the bars of a mesh say, in one line.

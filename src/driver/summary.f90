@@ -1,6 +1,7 @@
 !> summary.json: what ran, how fast, how well it kept its books, what was repaired, how it ended.
 module summary
   use balance, only: balance_type
+  use constants, only: unset
   use checksum, only: mix_reals, mix_integer, hexadecimal, empty_checksum
   use flow_state, only: repair_names
   use fragments, only: fragment_list
@@ -96,6 +97,13 @@ contains
         call json_end(file)
       end if
     end if
+    if (scene%coupled .or. scene%stages%solid_over) then
+      call json_begin(file, 'stages')
+      if (scene%stages%solid_started > unset) call json_put(file, 'solid_started', scene%stages%solid_started)
+      if (scene%stages%flow_over) call json_put(file, 'flow_ended', scene%stages%flow_ended)
+      if (scene%stages%solid_over) call json_put(file, 'solid_ended', scene%stages%solid_ended)
+      call json_end(file)
+    end if
     if (scene%coupled) then
       call json_begin(file, 'coupling')
       call json_put(file, 'impulse_on_solid', balance%exchanged)
@@ -137,7 +145,7 @@ contains
     do b = 1, scene%mesh%n_local
       mixed = mix_integer(empty_checksum, int(scene%mesh%local(b), i8))
       associate (n => scene%mesh%brick_cells)
-        if (scene%has_flow) then
+        if (scene%flow_runs()) then
           h = scene%flow%holder(b)
           do k = 1, n(3)
             do j = 1, n(2)

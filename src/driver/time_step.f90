@@ -26,9 +26,9 @@ contains
     real(wp) :: dt, left
     associate (clock => scene%clock)
       clock%solid_steps = 1
-      if (scene%has_flow) flow = flow_limit(scene%mesh, scene%flow)
+      if (scene%flow_runs()) flow = flow_limit(scene%mesh, scene%flow)
       if (scene%has_solid) solid = solid_limit(scene%mesh, scene%solid)
-      if (scene%coupled) then
+      if (scene%coupled .and. scene%flow_runs()) then
         if (solid%dt < flow%dt) then
           clock%solid_steps = min(most_parts, int(flow%dt/solid%dt))
           dt = clock%solid_steps*solid%dt
@@ -36,7 +36,7 @@ contains
         else
           dt = flow%dt
           ! a rigid body follows each step of the flow, which costs little
-          if (flow%dt < 0.5_wp*solid%dt .and. .not. all(scene%solid%material%model == model_rigid)) &
+          if (flow%dt < 0.5_wp*solid%dt .and. scene%solid_runs() .and. .not. all(scene%solid%material%model == model_rigid)) &
             dt = min(most_parts*flow%dt, solid%dt)
           clock%limiter = flow_limiter(scene, flow)
         end if

@@ -1,6 +1,6 @@
 !> Ghost cells at the faces of the domain. Sweeps go direction by direction, so edges and corners are not needed.
 module flow_boundary
-  use flow_state, only: flow_type, face_symmetry, face_inflow
+  use flow_state, only: flow_type, face_symmetry, face_inflow, face_ambient
   use kinds, only: wp
   use mesh, only: mesh_type
   implicit none
@@ -10,7 +10,8 @@ module flow_boundary
 contains
 
   !> Fills the ghost cells outside the domain of local brick b in the given buffer.
-  !> Symmetry mirrors the state and turns the normal velocity: a slip wall. Outflow repeats the last cell.
+  !> Symmetry mirrors the state and turns the normal velocity: a slip wall. Outflow repeats the last cell. Beyond an ambient
+  !> face the surroundings are as they were: a shock that leaves meets there what it has met before.
   subroutine fill_boundary(mesh, flow, b, buffer)
     type(mesh_type), intent(in) :: mesh
     type(flow_type), intent(inout) :: flow
@@ -35,11 +36,14 @@ contains
       to = [(last + outward*layer, layer=1, layers)]
       from = last
       if (kind == face_symmetry) from = [(last - outward*(layer - 1), layer=1, layers)]
-      call copy_layers(w, d, from, to, merge(-1.0_wp, 1.0_wp, kind == face_symmetry))
-      if (kind /= face_inflow) return
-      do layer = 1, layers
-        call set_layer(w, d, to(layer))
-      end do
+      select case (kind)
+      case (face_inflow)
+        call set_layers(w, d, to, flow%inflow)
+      case (face_ambient)
+        call set_layers(w, d, to, flow%ambient)
+      case default
+        call copy_layers(w, d, from, to, merge(-1.0_wp, 1.0_wp, kind == face_symmetry))
+      end select
     end subroutine fill_face
 
     !> Copies layers of cells, normal velocity times sign.
@@ -84,18 +88,21 @@ contains
       to = from
     end subroutine copy_rows
 
-    subroutine set_layer(w, d, layer)
+    subroutine set_layers(w, d, to, state)
       real(wp), allocatable, intent(inout) :: w(:, :, :, :)
-      integer, intent(in) :: d, layer
-      integer :: v
-      do v = 1, flow%layout%n_rows
-        select case (d)
-        case (1); w(layer, v, :, :) = flow%inflow(v)
-        case (2); w(:, v, layer, :) = flow%inflow(v)
-        case (3); w(:, v, :, layer) = flow%inflow(v)
-        end select
+      integer, intent(in) :: d, to(:)
+      real(wp), intent(in) :: state(:)
+      integer :: layer, v
+      do layer = 1, size(to)
+        do v = 1, flow%layout%n_rows
+          select case (d)
+          case (1); w(to(layer), v, :, :) = state(v)
+          case (2); w(:, v, to(layer), :) = state(v)
+          case (3); w(:, v, :, to(layer)) = state(v)
+          end select
+        end do
       end do
-    end subroutine set_layer
+    end subroutine set_layers
 
   end subroutine fill_boundary
 

@@ -11,7 +11,8 @@ module flow_initial
   use flow_filling, only: filling_type, share_of_regions, no_surface_cuts, mixed_cell, trace_density, halvings_for
   use flow_scheme, only: scheme_type, scheme_from_words
   use flow_shapes, only: filled_shape, volume_in_box, shape_all, shape_box, shape_sphere, shape_cylinder, shape_half_space
-  use flow_state, only: flow_type, allocate_flow, hold_cells, set_inflow, face_outflow, face_symmetry, face_inflow, face_periodic
+  use flow_state, only: flow_type, allocate_flow, hold_cells, set_inflow, face_outflow, face_symmetry, face_inflow, face_periodic, &
+    face_ambient
   use geometry, only: cell_volumes
   use kinds, only: wp
   use log, only: say
@@ -67,6 +68,7 @@ contains
     call fill_bricks(mesh, flow, filling, density, pressure)
     call weigh_charges(mesh, deck, flow, filling)
     flow%burn_total = unburnt_energy(mesh, flow)
+    if (any(flow%face == face_ambient)) call set_ambient(deck, flow, filling, density, pressure)
     if (any(flow%face == face_inflow)) call prepare_inflow(deck, flow, used, density, pressure)
     call set_noise(mesh, flow)
   end subroutine setup_flow
@@ -135,6 +137,7 @@ contains
         select case (lowercase(trim(deck%boundary%flow_face(d, side))))
         case ('symmetry'); flow%face(side, d) = face_symmetry
         case ('inflow'); flow%face(side, d) = face_inflow
+        case ('ambient'); flow%face(side, d) = face_ambient
         case ('periodic'); flow%face(side, d) = face_periodic
         case default; flow%face(side, d) = face_outflow
         end select
@@ -442,6 +445,24 @@ contains
         str(shape%upper(3) - shape%lower(3))
     end select
   end function dimensions_of
+
+  !> The surroundings: the last region that fills all, else the first region.
+  subroutine set_ambient(deck, flow, filling, density, pressure)
+    type(deck_type), intent(in) :: deck
+    type(flow_type), intent(inout) :: flow
+    type(filling_type), intent(in) :: filling(:)
+    real(wp), intent(in) :: density(:), pressure(:)
+    real(wp) :: share(size(filling))
+    integer :: i, last
+    if (size(deck%region) == 0) return
+    last = 1
+    do i = 1, size(deck%region)
+      if (lowercase(trim(deck%region(i)%shape)) == 'all') last = i
+    end do
+    share = 0
+    share(last) = 1
+    flow%ambient = mixed_cell(flow%layout, flow%eos, filling, share, flow%trace_fraction, density, pressure)
+  end subroutine set_ambient
 
   subroutine prepare_inflow(deck, flow, used, density, pressure)
     type(deck_type), intent(in) :: deck

@@ -10,9 +10,10 @@ module flow_state
   use mesh, only: mesh_type
   implicit none
   private
-  public :: allocate_flow, hold_cells, set_inflow
+  public :: allocate_flow, hold_cells, release_cells, set_inflow
 
-  integer, parameter, public :: face_outflow = 1, face_symmetry = 2, face_inflow = 3, face_periodic = 4
+  integer, parameter, public :: face_outflow = 1, face_symmetry = 2, face_inflow = 3, face_periodic = 4, &
+    face_ambient = 5
 
   !> Kinds of repair that are counted.
   integer, parameter, public :: repair_negative_mass = 1, repair_clipped_fraction = 2, repair_relaxation = 3, &
@@ -51,6 +52,7 @@ module flow_state
     real(wp) :: gravity(3) = 0
     integer :: face(2, 3) = face_outflow !< condition at the low and high face of each direction
     real(wp), allocatable :: inflow(:) !< rows of the state that enters
+    real(wp), allocatable :: ambient(:) !< rows of the state beyond ambient faces
     type(block), allocatable :: open(:) !< 1 flows, 0 closed; allocated only in bricks with closed cells; ghosts filled
     type(block), allocatable :: wall_impulse(:) !< momentum (3) given to closed cells, in the open cell beside them; with open
     type(block), allocatable :: wall(:) !< of walls that move: velocity (3) in closed cells, normal (3) in open ones beside them
@@ -143,6 +145,12 @@ contains
     integer, intent(in) :: b
     state_holder = holder(self%w(:, self%current), b)
   end function state_holder
+
+  !> Gives the memory of a flow back that is needed no more; books and counts stay.
+  subroutine release_cells(flow)
+    type(flow_type), intent(inout) :: flow
+    deallocate (flow%w, flow%open, flow%wall_impulse, flow%wall, flow%troubled, flow%arrival)
+  end subroutine release_cells
 
   !> Buffer that stage 1, 2 or 3 writes; stage 3's becomes the state.
   pure integer function target_buffer(self, stage)

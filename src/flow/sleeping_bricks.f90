@@ -10,7 +10,7 @@ module sleeping_bricks
   use brick_stage, only: advance_brick, brick_report, prepare_scratch, stage_type
   use flow_boundary, only: fill_boundary
   use flow_layout, only: n_flow_books
-  use flow_state, only: flow_type, hold_cells, face_symmetry, face_inflow, most_common_states
+  use flow_state, only: flow_type, hold_cells, face_symmetry, face_inflow, face_ambient, most_common_states
   use geometry, only: cell_volumes, x_face_areas
   use kinds, only: wp, i8
   use mesh, only: mesh_type
@@ -95,7 +95,7 @@ contains
     end do
   end subroutine rouse
 
-  !> Puts those awake to sleep that are in one state, ghosts included. buffer: of the state at the start of the step, which the first
+  !> Puts those awake to sleep that are in one state, ghosts included. buffer: of the state at the start of the step, that the first
   !> stage reads; only_faces: ghosts beyond edges are not filled.
   subroutine let_sleep(mesh, flow, stage, buffer, only_faces)
     type(mesh_type), intent(in) :: mesh
@@ -198,10 +198,19 @@ contains
       integer, intent(in) :: face
       select case (face)
       case (face_symmetry); kept_by = .not. abs(state(flow%layout%velocity(d))) > 0
-      case (face_inflow); kept_by = all(transfer(state, [0_i8]) == transfer(flow%inflow, [0_i8]))
+      case (face_inflow); kept_by = is_continued_by(flow%inflow)
+      case (face_ambient); kept_by = is_continued_by(flow%ambient)
       case default; kept_by = .true.
       end select
     end function kept_by
+    !> True if a neighbour like that changes nothing: all that is reconstructed has the same bits. Between equals at rest no flux
+    !> depends on the speed of sound, which the first step computes anew, in another order.
+    pure logical function is_continued_by(other)
+      real(wp), intent(in) :: other(:)
+      integer :: n
+      n = merge(size(state), flow%layout%n_reconstructed, any(abs(state(flow%layout%velocity(1):flow%layout%velocity(3))) > 0))
+      is_continued_by = all(transfer(state(:n), [0_i8]) == transfer(other(:n), [0_i8]))
+    end function is_continued_by
   end function sleep_allowed
 
   !> Local brick b lets go of its cells and shares the common state of these rows. Where there are too many states already it has,

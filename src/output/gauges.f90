@@ -179,8 +179,8 @@ contains
   end subroutine save_gauges
 
   !> Measures, once with dt = 0 before the first step and then after each step of size dt, and writes a row if one is due.
-  !> state, open, layout: of the flow; each absent where the scene has none. Once its particle has left the domain, a gauge on the
-  !> solid shows no numbers.
+  !> state, open, layout: of the flow; each absent where the scene has none. A gauge shows no numbers once its particle has left the
+  !> domain, or once the flow is over.
   subroutine sample_gauges(gauges, mesh, time, dt, state, open, layout, solid)
     type(gauges_type), intent(inout) :: gauges
     type(mesh_type), intent(in) :: mesh
@@ -193,7 +193,7 @@ contains
     logical :: due
     if (gauges%n == 0) return
     due = time >= gauges%next
-    flow = 0
+    if (gauges%flow%n > 0) flow = ieee_value(1.0_wp, ieee_quiet_nan)
     if (present(state) .and. gauges%flow%n > 0) then
       call read_flow_probes(gauges%flow, mesh, state, open, &
         [layout%pressure(), layout%density(), (layout%velocity(d), d=1, 3)], flow)
