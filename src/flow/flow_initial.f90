@@ -13,6 +13,7 @@ module flow_initial
   use flow_shapes, only: filled_shape, volume_in_box, shape_all, shape_box, shape_sphere, shape_cylinder, shape_half_space
   use flow_state, only: flow_type, allocate_flow, hold_cells, set_inflow, face_outflow, face_symmetry, face_inflow, face_periodic, &
     face_ambient
+  use flow_step, only: settled_state
   use geometry, only: cell_volumes
   use kinds, only: wp
   use log, only: say
@@ -68,7 +69,7 @@ contains
     call fill_bricks(mesh, flow, filling, density, pressure)
     call weigh_charges(mesh, deck, flow, filling)
     flow%burn_total = unburnt_energy(mesh, flow)
-    if (any(flow%face == face_ambient)) call set_ambient(deck, flow, filling, density, pressure)
+    if (any(flow%face == face_ambient)) call set_ambient(mesh, deck, flow, filling, density, pressure)
     if (any(flow%face == face_inflow)) call prepare_inflow(deck, flow, used, density, pressure)
     call set_noise(mesh, flow)
   end subroutine setup_flow
@@ -328,8 +329,10 @@ contains
     type(filling_type), intent(in) :: filling(:)
     real(wp), intent(in) :: density(:), pressure(:)
     real(wp) :: share(size(filling)), center(3), width(3), cell(flow%layout%n_rows)
-    logical :: is_filled
-    integer :: b, i, j, k
+    real(wp) :: alone(flow%layout%n_rows, size(filling)) !< state of cells that one filling fills
+    logical :: is_filled, is_known(size(filling))
+    integer :: b, i, j, k, pure
+    is_known = .false.
     do b = 1, mesh%n_local
       width = mesh%brick_cells*mesh%spacing
       if (no_surface_cuts(filling, mesh%brick(mesh%local(b))%origin + 0.5_wp*width, width)) then
@@ -358,8 +361,15 @@ contains
       center = mesh%brick(mesh%local(b))%origin + ([i, j, k] - 0.5_wp)*mesh%spacing
       call share_of_regions(filling, center, mesh%spacing, share)
       is_filled = .not. sum(share) < 1 - 1e-6_wp
-      if (is_filled) then
+      pure = maxloc(share, dim=1)
+      if (is_filled .and. count(share > 0) == 1 .and. is_known(pure)) then
+        cell = alone(:, pure)
+      else if (is_filled) then
         cell = mixed_cell(flow%layout, flow%eos, filling, share/sum(share), flow%trace_fraction, density, pressure)
+        if (count(share > 0) > 1) return
+        cell = settled_state(mesh, flow, cell)
+        alone(:, pure) = cell
+        is_known(pure) = .true.
       else
         call fatal('region: the cell at '//str(center(1))//' '//str(center(2))//' '//str(center(3))// &
           ' is not filled by any region', exit_bad_input)
@@ -447,7 +457,8 @@ contains
   end function dimensions_of
 
   !> The surroundings: the last region that fills all, else the first region.
-  subroutine set_ambient(deck, flow, filling, density, pressure)
+  subroutine set_ambient(mesh, deck, flow, filling, density, pressure)
+    type(mesh_type), intent(in) :: mesh
     type(deck_type), intent(in) :: deck
     type(flow_type), intent(inout) :: flow
     type(filling_type), intent(in) :: filling(:)
@@ -461,7 +472,8 @@ contains
     end do
     share = 0
     share(last) = 1
-    flow%ambient = mixed_cell(flow%layout, flow%eos, filling, share, flow%trace_fraction, density, pressure)
+    flow%ambient = settled_state(mesh, flow, mixed_cell(flow%layout, flow%eos, filling, share, flow%trace_fraction, density, &
+      pressure))
   end subroutine set_ambient
 
   subroutine prepare_inflow(deck, flow, used, density, pressure)
