@@ -331,7 +331,7 @@ contains
     real(wp) :: share(size(filling)), center(3), width(3), cell(flow%layout%n_rows)
     real(wp) :: alone(flow%layout%n_rows, size(filling)) !< state of cells that one filling fills
     logical :: is_filled, is_known(size(filling))
-    integer :: b, i, j, k, pure
+    integer :: b, i, j, k, only
     is_known = .false.
     do b = 1, mesh%n_local
       width = mesh%brick_cells*mesh%spacing
@@ -356,23 +356,23 @@ contains
 
   contains
 
+    !> State of a cell. One that a single filling fills has settled, so that still gas stays as it is to the last bit.
     subroutine fill_cell(i, j, k)
       integer, intent(in) :: i, j, k
       center = mesh%brick(mesh%local(b))%origin + ([i, j, k] - 0.5_wp)*mesh%spacing
       call share_of_regions(filling, center, mesh%spacing, share)
       is_filled = .not. sum(share) < 1 - 1e-6_wp
-      pure = maxloc(share, dim=1)
-      if (is_filled .and. count(share > 0) == 1 .and. is_known(pure)) then
-        cell = alone(:, pure)
-      else if (is_filled) then
-        cell = mixed_cell(flow%layout, flow%eos, filling, share/sum(share), flow%trace_fraction, density, pressure)
-        if (count(share > 0) > 1) return
-        cell = settled_state(mesh, flow, cell)
-        alone(:, pure) = cell
-        is_known(pure) = .true.
-      else
+      if (.not. is_filled) then
         call fatal('region: the cell at '//str(center(1))//' '//str(center(2))//' '//str(center(3))// &
           ' is not filled by any region', exit_bad_input)
+      else if (count(share > 0) > 1) then
+        cell = mixed_cell(flow%layout, flow%eos, filling, share/sum(share), flow%trace_fraction, density, pressure)
+      else
+        only = maxloc(share, dim=1)
+        if (.not. is_known(only)) alone(:, only) = settled_state(mesh, flow, &
+          mixed_cell(flow%layout, flow%eos, filling, share/sum(share), flow%trace_fraction, density, pressure))
+        is_known(only) = .true.
+        cell = alone(:, only)
       end if
     end subroutine fill_cell
 
