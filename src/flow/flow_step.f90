@@ -127,7 +127,7 @@ contains
     logical :: changes
     integer :: turn, stage
     integer, parameter :: most_turns = 10
-    real(wp), parameter :: round_off = 1e-10_wp !< what changes more is no matter of last bits, and left to the first step
+    real(wp), parameter :: round_off = 1e-7_wp !< what changes more is no matter of last bits, and left to the first step
     settled = state
     do turn = 1, most_turns
       start = settled
