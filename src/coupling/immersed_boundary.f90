@@ -163,7 +163,7 @@ contains
       if (any_rank(any(opened))) call fill(mesh, halo, flow%w(:, flow%current), flow%layout%n_rows, only_faces=.true., &
                                            unread=.not. opened)
       do b = 1, mesh%n_local
-        if (coupling%near(b) .and. .not. is_asleep(flow, b)) call answer_for_gas(mesh, flow, coupling, b)
+        if (coupling%near(b) .and. .not. is_asleep(flow, b)) call answer_for_gas(mesh, solid, flow, coupling, b)
       end do
     end if
     coupling%started = .true.
@@ -216,8 +216,9 @@ contains
 
   !> Books out the gas of cells that became inside cells; cells that are open again get the mean state of their face neighbours
   !> that were open before, and are booked in. Without such a neighbour the gas that was closed in comes out again.
-  subroutine answer_for_gas(mesh, flow, coupling, b)
+  subroutine answer_for_gas(mesh, solid, flow, coupling, b)
     type(mesh_type), intent(in) :: mesh
+    type(solid_type), intent(in) :: solid
     type(flow_type), intent(inout) :: flow
     type(coupling_type), intent(inout) :: coupling
     integer, intent(in) :: b
@@ -240,7 +241,8 @@ contains
                                       before(:, 1, :, :), w, outward)
               cell = w(i, :flow%layout%n_rows, j, k)
               call close_cell(flow%layout, flow%eos, cell)
-              if (coupling%moving_wall) call follow_wall(flow%layout, flow%eos, flow%wall(b)%a(i, 1:3, j, k), outward, cell)
+              if (coupling%moving_wall .and. solid_beside(solid, b, [i, j, k])) call follow_wall(flow%layout, flow%eos, &
+                cell_velocity(solid, frame_of(mesh, solid%order, b), b, [i, j, k]), outward, cell)
               w(i, :flow%layout%n_rows, j, k) = cell
               call book_gas(i, j, k, 1.0_wp)
               coupling%partial(booked_uncovered, b) = coupling%partial(booked_uncovered, b) + 1
@@ -268,6 +270,21 @@ contains
     end subroutine book_gas
 
   end subroutine answer_for_gas
+
+  !> True if a node of the cell has mass: the solid that has left it is still beside it.
+  pure logical function solid_beside(solid, b, cell)
+    type(solid_type), intent(in) :: solid
+    integer, intent(in) :: b, cell(3)
+    integer :: field, last(3)
+    solid_beside = .false.
+    do field = 1, solid%n_fields
+      if (.not. allocated(solid%node(field, b)%a)) cycle
+      associate (mass => solid%node(field, b)%a(:, 1, :, :))
+        last = min(cell + 1, shape(mass)) ! the first node has the index 1 here
+        solid_beside = solid_beside .or. any(mass(cell(1):last(1), cell(2):last(2), cell(3):last(3)) > 0)
+      end associate
+    end do
+  end function solid_beside
 
   !> Sets the state of a cell to the mean of those face neighbours that were open before. outward: sum of the directions from them
   !> to the cell.

@@ -43,10 +43,14 @@ contains
     call restart_put(file, 'stages', pack_stages(scene%stages))
     associate (mesh => scene%mesh, one => [1, 1, 1])
       if (scene%has_flow) then
+<<<<<<< HEAD
         if (scene%flow_runs()) then
           call restart_put_blocks(file, 'flow', scene%flow%w(:mesh%n_local, scene%flow%current), one, mesh%brick_cells)
           call put_sleepers(file, scene%flow, mesh%n_local)
         end if
+=======
+        if (scene%flow_runs()) call put_flow(file, mesh, scene%flow)
+>>>>>>> sleep
         call restart_put_table(file, 'flow_books', [(size(scene%flow%books(:, :, b)), b=1, mesh%n_local)], &
                                reshape(scene%flow%books, [size(scene%flow%books)]))
         call MPI_Allreduce(scene%flow%repairs%count, repairs, size(repairs), MPI_INTEGER8, MPI_SUM, world)
@@ -139,22 +143,23 @@ contains
     call close_restart(file)
   end subroutine resume_run
 
-  !> Writes the common states of the bricks that sleep, which have no cells in the file.
-  subroutine put_sleepers(file, flow, n_local)
+  !> Writes the flow: of bricks that sleep only their state.
+  subroutine put_flow(file, mesh, flow)
     type(restart_file), intent(inout) :: file
+    type(mesh_type), intent(in) :: mesh
     type(flow_type), intent(in) :: flow
-    integer, intent(in) :: n_local
     real(wp), allocatable :: states(:)
-    integer :: b, counts(n_local)
+    integer :: b, counts(mesh%n_local)
+    call restart_put_blocks(file, 'flow', flow%w(:mesh%n_local, flow%current), [1, 1, 1], mesh%brick_cells)
     allocate (states(0))
-    do b = 1, n_local
-      counts(b) = 0
+    counts = 0
+    do b = 1, mesh%n_local
       if (.not. is_asleep(flow, b)) cycle
       counts(b) = flow%layout%n_rows
       states = [states, flow%w(flow%holder(b), flow%current)%a(1, :, 1, 1)]
     end do
     call restart_put_table(file, 'flow_asleep', counts, states)
-  end subroutine put_sleepers
+  end subroutine put_flow
 
   !> Reads the flow: bricks that slept when the file was written have only their state in it. In files from before there was sleep
   !> all are awake.

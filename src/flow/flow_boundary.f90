@@ -31,70 +31,78 @@ contains
     subroutine fill_face(w, d, last, layers, outward)
       real(wp), allocatable, intent(inout) :: w(:, :, :, :)
       integer, intent(in) :: d, last, layers, outward
-      integer :: layer, kind, from
+      integer :: layer, kind, from(layers), to(layers)
       kind = flow%face(merge(1, 2, outward < 0), d)
-      do layer = 1, layers
-        select case (kind)
-        case (face_symmetry)
-          from = last - outward*(layer - 1)
-        case default
-          from = last
-        end select
-        select case (kind)
-        case (face_inflow)
-          call set_layer(w, d, last + outward*layer, flow%inflow)
-        case (face_ambient)
-          call set_layer(w, d, last + outward*layer, flow%ambient)
-        case default
-          call copy_layer(w, d, from, last + outward*layer, merge(-1.0_wp, 1.0_wp, kind == face_symmetry))
-        end select
-      end do
+      to = [(last + outward*layer, layer=1, layers)]
+      from = last
+      if (kind == face_symmetry) from = [(last - outward*(layer - 1), layer=1, layers)]
+      select case (kind)
+      case (face_inflow)
+        call set_layers(w, d, to, flow%inflow)
+      case (face_ambient)
+        call set_layers(w, d, to, flow%ambient)
+      case default
+        call copy_layers(w, d, from, to, merge(-1.0_wp, 1.0_wp, kind == face_symmetry))
+      end select
     end subroutine fill_face
 
-    !> Copies a layer of cells, normal velocity times sign.
-    subroutine copy_layer(w, d, from, to, sign)
+    !> Copies layers of cells, normal velocity times sign.
+    subroutine copy_layers(w, d, from, to, sign)
       real(wp), allocatable, intent(inout) :: w(:, :, :, :)
-      integer, intent(in) :: d, from, to
+      integer, intent(in) :: d, from(:), to(:)
       real(wp), intent(in) :: sign
-      real(wp) :: factor
-      integer :: v, j, k, source(3), target(3)
-      do k = merge(to, lbound(w, 4), d == 3), merge(to, ubound(w, 4), d == 3)
-        do j = merge(to, lbound(w, 3), d == 2), merge(to, ubound(w, 3), d == 2)
-          target = [to, j, k]
-          source = target
-          source(d) = from
-          do v = 1, flow%layout%n_rows
-            factor = merge(sign, 1.0_wp, v == flow%layout%velocity_row + d - 1)
-            if (d == 1) then
-              w(to, v, j, k) = factor*w(from, v, j, k)
-            else
-              call copy_row(size(w, 1), factor, w(lbound(w, 1), v, source(2), source(3)), w(lbound(w, 1), v, j, k))
-            end if
+      integer :: layer, v, j, k, first, normal
+      first = lbound(w, 1)
+      normal = flow%layout%velocity_row + d - 1
+      select case (d)
+      case (1)
+        do k = lbound(w, 4), ubound(w, 4)
+          do j = lbound(w, 3), ubound(w, 3)
+            do v = 1, flow%layout%n_rows
+              do layer = 1, size(to)
+                w(to(layer), v, j, k) = merge(sign, 1.0_wp, v == normal)*w(from(layer), v, j, k)
+              end do
+            end do
           end do
         end do
-      end do
-    end subroutine copy_layer
+      case (2)
+        do k = lbound(w, 4), ubound(w, 4)
+          do layer = 1, size(to)
+            call copy_rows(size(w, 1)*size(w, 2), w(first, 1, from(layer), k), w(first, 1, to(layer), k))
+            w(:, normal, to(layer), k) = sign*w(:, normal, to(layer), k)
+          end do
+        end do
+      case (3)
+        do layer = 1, size(to)
+          call copy_rows(size(w, 1)*size(w, 2)*size(w, 3), w(first, 1, lbound(w, 3), from(layer)), &
+            w(first, 1, lbound(w, 3), to(layer)))
+          w(:, normal, :, to(layer)) = sign*w(:, normal, :, to(layer))
+        end do
+      end select
+    end subroutine copy_layers
 
-    pure subroutine copy_row(n, factor, from, to)
+    pure subroutine copy_rows(n, from, to)
       integer, intent(in) :: n
-      real(wp), intent(in) :: factor, from(n)
+      real(wp), intent(in) :: from(n)
       real(wp), intent(inout) :: to(n)
-      to = factor*from
-    end subroutine copy_row
+      to = from
+    end subroutine copy_rows
 
-    subroutine set_layer(w, d, layer, state)
+    subroutine set_layers(w, d, to, state)
       real(wp), allocatable, intent(inout) :: w(:, :, :, :)
-      integer, intent(in) :: d, layer
+      integer, intent(in) :: d, to(:)
       real(wp), intent(in) :: state(:)
-      integer :: v
-      do v = 1, flow%layout%n_rows
-        select case (d)
-        case (1); w(layer, v, :, :) = state(v)
-        case (2); w(:, v, layer, :) = state(v)
-        case (3); w(:, v, :, layer) = state(v)
-        end select
+      integer :: layer, v
+      do layer = 1, size(to)
+        do v = 1, flow%layout%n_rows
+          select case (d)
+          case (1); w(to(layer), v, :, :) = state(v)
+          case (2); w(:, v, to(layer), :) = state(v)
+          case (3); w(:, v, :, to(layer)) = state(v)
+          end select
+        end do
       end do
-    end subroutine set_layer
+    end subroutine set_layers
 
   end subroutine fill_boundary
 

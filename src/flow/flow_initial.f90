@@ -11,8 +11,14 @@ module flow_initial
   use flow_filling, only: filling_type, share_of_regions, no_surface_cuts, mixed_cell, trace_density, halvings_for
   use flow_scheme, only: scheme_type, scheme_from_words
   use flow_shapes, only: filled_shape, volume_in_box, shape_all, shape_box, shape_sphere, shape_cylinder, shape_half_space
+<<<<<<< HEAD
   use flow_state, only: flow_type, allocate_flow, hold_cells, set_inflow, face_outflow, face_symmetry, face_inflow, &
     face_periodic, face_ambient
+=======
+  use flow_state, only: flow_type, allocate_flow, hold_cells, set_inflow, face_outflow, face_symmetry, face_inflow, face_periodic, &
+    face_ambient
+  use flow_step, only: settled_state
+>>>>>>> sleep
   use geometry, only: cell_volumes
   use kinds, only: wp
   use log, only: say
@@ -69,7 +75,7 @@ contains
       density, pressure)
     call weigh_charges(mesh, deck, flow, filling)
     flow%burn_total = unburnt_energy(mesh, flow)
-    if (any(flow%face == face_ambient)) call set_ambient(deck, flow, filling, density, pressure)
+    if (any(flow%face == face_ambient)) call set_ambient(mesh, deck, flow, filling, density, pressure)
     if (any(flow%face == face_inflow)) call prepare_inflow(deck, flow, used, density, pressure)
     call set_noise(mesh, flow)
   end subroutine setup_flow
@@ -329,8 +335,10 @@ contains
     type(filling_type), intent(in) :: filling(:)
     real(wp), intent(in) :: density(:), pressure(:)
     real(wp) :: share(size(filling)), center(3), width(3), cell(flow%layout%n_rows)
-    logical :: is_filled
-    integer :: b, i, j, k
+    real(wp) :: alone(flow%layout%n_rows, size(filling)) !< state of cells that one filling fills
+    logical :: is_filled, is_known(size(filling))
+    integer :: b, i, j, k, only
+    is_known = .false.
     do b = 1, mesh%n_local
       width = mesh%brick_cells*mesh%spacing
       if (no_surface_cuts(filling, mesh%brick(mesh%local(b))%origin + 0.5_wp*width, width)) then
@@ -354,16 +362,23 @@ contains
 
   contains
 
+    !> State of a cell. One that a single filling fills has settled, so that still gas stays as it is to the last bit.
     subroutine fill_cell(i, j, k)
       integer, intent(in) :: i, j, k
       center = mesh%brick(mesh%local(b))%origin + ([i, j, k] - 0.5_wp)*mesh%spacing
       call share_of_regions(filling, center, mesh%spacing, share)
       is_filled = .not. sum(share) < 1 - 1e-6_wp
-      if (is_filled) then
-        cell = mixed_cell(flow%layout, flow%eos, filling, share/sum(share), flow%trace_fraction, density, pressure)
-      else
+      if (.not. is_filled) then
         call fatal('region: the cell at '//str(center(1))//' '//str(center(2))//' '//str(center(3))// &
           ' is not filled by any region', exit_bad_input)
+      else if (count(share > 0) > 1) then
+        cell = mixed_cell(flow%layout, flow%eos, filling, share/sum(share), flow%trace_fraction, density, pressure)
+      else
+        only = maxloc(share, dim=1)
+        if (.not. is_known(only)) alone(:, only) = settled_state(mesh, flow, &
+          mixed_cell(flow%layout, flow%eos, filling, share/sum(share), flow%trace_fraction, density, pressure))
+        is_known(only) = .true.
+        cell = alone(:, only)
       end if
     end subroutine fill_cell
 
@@ -449,7 +464,8 @@ contains
   end function dimensions_of
 
   !> The surroundings: the last region that fills all, else the first region.
-  subroutine set_ambient(deck, flow, filling, density, pressure)
+  subroutine set_ambient(mesh, deck, flow, filling, density, pressure)
+    type(mesh_type), intent(in) :: mesh
     type(deck_type), intent(in) :: deck
     type(flow_type), intent(inout) :: flow
     type(filling_type), intent(in) :: filling(:)
@@ -463,7 +479,8 @@ contains
     end do
     share = 0
     share(last) = 1
-    flow%ambient = mixed_cell(flow%layout, flow%eos, filling, share, flow%trace_fraction, density, pressure)
+    flow%ambient = settled_state(mesh, flow, mixed_cell(flow%layout, flow%eos, filling, share, flow%trace_fraction, density, &
+      pressure))
   end subroutine set_ambient
 
   subroutine prepare_inflow(deck, flow, used, density, pressure)
