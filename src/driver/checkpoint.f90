@@ -43,14 +43,7 @@ contains
     call restart_put(file, 'stages', pack_stages(scene%stages))
     associate (mesh => scene%mesh, one => [1, 1, 1])
       if (scene%has_flow) then
-<<<<<<< HEAD
-        if (scene%flow_runs()) then
-          call restart_put_blocks(file, 'flow', scene%flow%w(:mesh%n_local, scene%flow%current), one, mesh%brick_cells)
-          call put_sleepers(file, scene%flow, mesh%n_local)
-        end if
-=======
         if (scene%flow_runs()) call put_flow(file, mesh, scene%flow)
->>>>>>> sleep
         call restart_put_table(file, 'flow_books', [(size(scene%flow%books(:, :, b)), b=1, mesh%n_local)], &
                                reshape(scene%flow%books, [size(scene%flow%books)]))
         call MPI_Allreduce(scene%flow%repairs%count, repairs, size(repairs), MPI_INTEGER8, MPI_SUM, world)

@@ -335,11 +335,7 @@ contains
     figures%cells = 0
     if (scene%flow_runs()) figures%cells = product(real(scene%mesh%cells, wp))*max(scene%clock%flow_steps, 1)
     if (scene%solid_runs()) figures%cells = figures%cells + sum(balance%solid%count)*scene%clock%solid_steps
-<<<<<<< HEAD
     if (scene%flow_runs()) figures%awake = awake_share(scene%flow)
-=======
-    figures%awake = awake_share(scene%flow)
->>>>>>> sleep
     figures%wall = wall_seconds()
     call say(report_line(figures, records%pace))
     if (.not. abs(balance%energy) <= huge(1.0_wp)) call fatal('the energy of the scene is not finite at step '// &

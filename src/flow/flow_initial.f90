@@ -11,14 +11,9 @@ module flow_initial
   use flow_filling, only: filling_type, share_of_regions, no_surface_cuts, mixed_cell, trace_density, halvings_for
   use flow_scheme, only: scheme_type, scheme_from_words
   use flow_shapes, only: filled_shape, volume_in_box, shape_all, shape_box, shape_sphere, shape_cylinder, shape_half_space
-<<<<<<< HEAD
-  use flow_state, only: flow_type, allocate_flow, hold_cells, set_inflow, face_outflow, face_symmetry, face_inflow, &
-    face_periodic, face_ambient
-=======
   use flow_state, only: flow_type, allocate_flow, hold_cells, set_inflow, face_outflow, face_symmetry, face_inflow, face_periodic, &
     face_ambient
   use flow_step, only: settled_state
->>>>>>> sleep
   use geometry, only: cell_volumes
   use kinds, only: wp
   use log, only: say

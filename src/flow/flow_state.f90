@@ -10,11 +10,7 @@ module flow_state
   use mesh, only: mesh_type
   implicit none
   private
-<<<<<<< HEAD
-  public :: allocate_flow, hold_cells, set_inflow, release_cells
-=======
   public :: allocate_flow, hold_cells, release_cells, set_inflow
->>>>>>> sleep
 
   integer, parameter, public :: face_outflow = 1, face_symmetry = 2, face_inflow = 3, face_periodic = 4, &
     face_ambient = 5
@@ -131,15 +127,6 @@ contains
     end do
   end subroutine allocate_flow
 
-<<<<<<< HEAD
-  !> Gives the memory of a flow back that is needed no more; books and counts stay.
-  subroutine release_cells(flow)
-    type(flow_type), intent(inout) :: flow
-    deallocate (flow%w, flow%open, flow%wall_impulse, flow%wall, flow%troubled, flow%arrival)
-  end subroutine release_cells
-
-=======
->>>>>>> sleep
   !> Allocates the state of local brick or common state b: all ones.
   subroutine hold_cells(flow, mesh, b)
     type(flow_type), intent(inout) :: flow
@@ -158,15 +145,12 @@ contains
     integer, intent(in) :: b
     state_holder = holder(self%w(:, self%current), b)
   end function state_holder
-<<<<<<< HEAD
-=======
 
   !> Gives the memory of a flow back that is needed no more; books and counts stay.
   subroutine release_cells(flow)
     type(flow_type), intent(inout) :: flow
     deallocate (flow%w, flow%open, flow%wall_impulse, flow%wall, flow%troubled, flow%arrival)
   end subroutine release_cells
->>>>>>> sleep
 
   !> Buffer that stage 1, 2 or 3 writes; stage 3's becomes the state.
   pure integer function target_buffer(self, stage)

@@ -127,7 +127,7 @@ contains
     logical :: changes
     integer :: turn, stage
     integer, parameter :: most_turns = 10
-    real(wp), parameter :: round_off = 1e-7_wp !< what changes more is no matter of last bits, and left to the first step
+    real(wp), parameter :: slight = 1e-7_wp !< as the closing of a mixture with traces may change; more is left to the first step
     settled = state
     do turn = 1, most_turns
       start = settled
@@ -142,7 +142,7 @@ contains
       end do
       if (.not. changes) exit
     end do
-    if (any(abs(settled - state) > round_off*abs(state))) settled = state
+    if (any(abs(settled - state) > slight*abs(state))) settled = state
   end function settled_state
 
   !> What all bricks need to know of a stage.

@@ -198,13 +198,8 @@ contains
       integer, intent(in) :: face
       select case (face)
       case (face_symmetry); kept_by = .not. abs(state(flow%layout%velocity(d))) > 0
-<<<<<<< HEAD
-      case (face_inflow); kept_by = all(transfer(state, [0_i8]) == transfer(flow%inflow, [0_i8]))
-      case (face_ambient); kept_by = all(transfer(state, [0_i8]) == transfer(flow%ambient, [0_i8]))
-=======
       case (face_inflow); kept_by = is_continued_by(flow%inflow)
       case (face_ambient); kept_by = is_continued_by(flow%ambient)
->>>>>>> sleep
       case default; kept_by = .true.
       end select
     end function kept_by
