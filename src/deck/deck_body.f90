@@ -30,6 +30,8 @@ module deck_body
     character(word_length) :: fixed_rotation = '' !< axes about which the body does not turn
     real(wp) :: angular_velocity(3) = 0 !< about the centre of mass, at the start
     integer :: line = 0
+    integer :: first = 0 !< place of the first body of this name in the deck, and
+    integer :: number = 0 !< how manieth name that is; both set by the checks
   end type body_group
 
   type, public :: hole_group

@@ -9,7 +9,7 @@ module deck_check_solid
   use deck_problems, only: problem_list, nearest_or_allowed
   use deck_tables, only: find_table
   use deck_types, only: deck_type, body_group, clamp_group, contact_group, find_body, find_material, &
-    heterogeneity_group, hole_group, reinforcement_group
+    number_bodies, heterogeneity_group, hole_group, reinforcement_group
   use text, only: lowercase, str
   implicit none
   private
@@ -25,6 +25,7 @@ contains
     type(key_table), intent(in) :: tables(:)
     type(problem_list), intent(inout) :: problems, warnings
     integer :: i
+    call number_bodies(deck)
     call check_numerics(deck, tables(find_table(tables, 'solid', 1)), problems)
     call check_loads(deck, tables(find_table(tables, 'output', 1)), problems)
     call check_stages(deck, tables(find_table(tables, 'stages', 1)), problems)
@@ -102,12 +103,12 @@ contains
     if (any(abs(body%velocity_gradient) > 0.0_wp)) call problems%add_at_key(table, 'velocity_gradient', &
       'a rigid body has none; angular_velocity makes it turn')
     do j = 1, size(deck%reinforcement)
-      if (find_body(deck, deck%reinforcement(j)%body) == find_body(deck, body%name)) call problems%add_at_key(table, 'material', &
+      if (find_body(deck, deck%reinforcement(j)%body) == body%first) call problems%add_at_key(table, 'material', &
         'a rigid body has no reinforcement')
     end do
     do j = 1, size(deck%body)
-      if (find_body(deck, deck%body(j)%name) == find_body(deck, body%name)) cycle
-      if (find_body(deck, body%name) /= i) cycle
+      if (deck%body(j)%first == body%first) cycle
+      if (body%first /= i) cycle
       call warnings%add_at_key(table, 'material', 'a rigid body meets the flow only: it passes through other bodies')
       exit
     end do
@@ -139,7 +140,7 @@ contains
         'only a fluid (model = ''fluid'') starts under a pressure')
     end if
     call check_rigid(deck, body, i, table, problems, warnings)
-    first = find_body(deck, body%name)
+    first = body%first
     if (first == i .or. first == 0 .or. body%name == '') return
     associate (other => deck%body(first))
       body%name = other%name
@@ -219,7 +220,7 @@ contains
     if (deck%material(material)%model /= 'fluid' .and. deck%material(material)%eos /= '') call problems%add_at_key(table, '', &
       'material '''//trim(deck%material(material)%name)//''' takes its pressure from an eos, which does not vary')
     do i = 1, size(deck%body)
-      if (body > 0 .and. find_body(deck, deck%body(i)%name) /= body) cycle
+      if (body > 0 .and. deck%body(i)%first /= body) cycle
       if (find_material(deck, deck%body(i)%material) /= material) cycle
       if (.not. any(deck%mesh%active() .and. field%correlation_length < 2*deck%body(i)%spacing)) cycle
       if (.not. field%correlation_length(1) > unset) cycle

@@ -29,7 +29,7 @@ module deck_types
     detonator_group, solid_group, material_test_group
   public :: body_group, hole_group, reinforcement_group, heterogeneity_group, clamp_group, contact_group, coupling_group, &
     stages_group, gauge_group, output_group
-  public :: find_material, find_body
+  public :: find_material, find_body, number_bodies
 
   !> Everything that a run is asked to do. All numbers are in the unit system run%units; repeated groups stand in the
   !> order of the deck and have size 0 where the deck has none.
@@ -81,5 +81,23 @@ contains
     end do
     i = 0
   end function find_body
+
+  !> Numbers the bodies by their names in the order of the deck.
+  pure subroutine number_bodies(deck)
+    type(deck_type), intent(inout) :: deck
+    character(word_length) :: name(size(deck%body))
+    integer :: i, n
+    n = 0
+    do i = 1, size(deck%body)
+      name(i) = lowercase(deck%body(i)%name)
+      deck%body(i)%first = findloc(name(:i), name(i), dim=1)
+      if (deck%body(i)%first == i) then
+        n = n + 1
+        deck%body(i)%number = n
+      else
+        deck%body(i)%number = deck%body(deck%body(i)%first)%number
+      end if
+    end do
+  end subroutine number_bodies
 
 end module deck_types

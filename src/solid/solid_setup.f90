@@ -47,7 +47,7 @@ contains
     call allocate_solid(mesh, solid)
     call make_pieces(mesh, deck, used, field, solid, pieces)
     call generate_particles(mesh, solid, pieces)
-    call set_factors(mesh, deck, used, [(body_number(deck, deck%body(i)%name), i=1, size(deck%body))], pieces, solid)
+    call set_factors(mesh, deck, used, deck%body%number, pieces, solid)
     call start_rigid(mesh, solid)
   end subroutine setup_solid
 
@@ -134,7 +134,7 @@ contains
       m = find_material(deck, deck%body(i)%material)
       if (m == 0) call fatal("body '"//trim(deck%body(i)%name)//"': no material '"//trim(deck%body(i)%material)//"'", &
         exit_bad_input)
-      call use_material(m, field(body_number(deck, deck%body(i)%name)))
+      call use_material(m, field(deck%body(i)%number))
     end do
     do i = 1, size(deck%reinforcement)
       m = find_material(deck, deck%reinforcement(i)%material)
@@ -197,7 +197,7 @@ contains
     integer :: i
     allocate (solid%body_name(size(deck%body)))
     do i = 1, size(deck%body)
-      if (find_body(deck, deck%body(i)%name) /= i) cycle
+      if (deck%body(i)%first /= i) cycle
       solid%n_bodies = solid%n_bodies + 1
       solid%body_name(solid%n_bodies) = deck%body(i)%name
     end do
@@ -215,8 +215,8 @@ contains
     solid%rigid_of_body = 0
     do i = 1, size(deck%body)
       set = findloc(used, find_material(deck, deck%body(i)%material), dim=1)
-      if (solid%material(set)%model /= model_rigid .or. find_body(deck, deck%body(i)%name) /= i) cycle
-      rigid%body = body_number(deck, deck%body(i)%name)
+      if (solid%material(set)%model /= model_rigid .or. deck%body(i)%first /= i) cycle
+      rigid%body = deck%body(i)%number
       do d = 1, 3
         rigid%free(d) = mesh%active(d) .and. index(deck%body(i)%fixed, 'xyz'(d:d)) == 0
         rigid%free_axis(d) = all(mesh%active .or. [1, 2, 3] == d) .and. index(deck%body(i)%fixed_rotation, 'xyz'(d:d)) == 0
@@ -227,15 +227,14 @@ contains
     end do
   end subroutine list_rigid
 
-  !> Number of the body of this name.
+  !> Number of the body of this name, 0 if there is none.
   pure integer function body_number(deck, name) result(number)
     type(deck_type), intent(in) :: deck
     character(*), intent(in) :: name
     integer :: i
     number = 0
-    do i = 1, find_body(deck, name)
-      if (find_body(deck, deck%body(i)%name) == i) number = number + 1
-    end do
+    i = find_body(deck, name)
+    if (i > 0) number = deck%body(i)%number
   end function body_number
 
   subroutine set_supports(mesh, deck, solid)
@@ -269,7 +268,7 @@ contains
         end if
         ! a clamp of one body holds the nodes around that body's shapes only
         do i = 1, size(deck%body)
-          if (find_body(deck, deck%body(i)%name) /= find_body(deck, clamp%body)) cycle
+          if (deck%body(i)%first /= find_body(deck, clamp%body)) cycle
           shape = deck_shape(mesh, deck%body(i)%shape, deck%body(i)%lower, deck%body(i)%upper, deck%body(i)%center, &
             deck%body(i)%radius, deck%body(i)%start, deck%body(i)%end, deck%body(i)%caliber_radius_head)
           solid%clamp = [solid%clamp, clamp_box(max(clamp%lower, shape%lower - mesh%spacing), &
@@ -318,21 +317,21 @@ contains
           body%caliber_radius_head)
         allocate (cut(0))
         do j = 1, i - 1
-          if (find_body(deck, deck%body(j)%name) == find_body(deck, body%name)) cut = [cut, shape(j)]
+          if (deck%body(j)%first == body%first) cut = [cut, shape(j)]
         end do
         do j = 1, size(deck%hole)
-          if (find_body(deck, deck%hole(j)%body) /= find_body(deck, body%name)) cycle
+          if (find_body(deck, deck%hole(j)%body) /= body%first) cycle
           cut = [cut, deck_shape(mesh, deck%hole(j)%shape, deck%hole(j)%lower, deck%hole(j)%upper, deck%hole(j)%center, &
             deck%hole(j)%radius, deck%hole(j)%start, deck%hole(j)%end, deck%hole(j)%caliber_radius_head)]
         end do
         do j = 1, size(bar)
-          if (owner(j) == find_body(deck, body%name)) cut = [cut, bar(j)]
+          if (owner(j) == body%first) cut = [cut, bar(j)]
         end do
         piece%name = body%name
         piece%shape = shape(i)
         call move_alloc(cut, piece%cut)
         piece%lattice = body_lattice(mesh, shape(i), body%spacing)
-        piece%body = body_number(deck, body%name)
+        piece%body = body%number
         piece%set = set_of(body%material, piece%body)
         piece%velocity = body%velocity
         piece%velocity_gradient = body%velocity_gradient
@@ -349,7 +348,7 @@ contains
         piece%shape = bar(i)
         call move_alloc(cut, piece%cut)
         piece%lattice = bar_lattice(mesh, bar(i), merge(bars%spacing, body%spacing, bars%spacing > 0))
-        piece%body = body_number(deck, body%name)
+        piece%body = body%number
         piece%set = set_of(bars%material, piece%body)
         piece%velocity = body%velocity
         piece%velocity_gradient = body%velocity_gradient

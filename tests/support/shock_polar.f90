@@ -108,7 +108,8 @@ contains
     do i = 1, n - 1
       high = i*(0.5_wp*pi - wedge)/n
       mismatch = mismatch_of_turns(gamma, mach, wedge, high)
-      if (mismatch < huge(1.0_wp) .and. mismatch_low < huge(1.0_wp) .and. mismatch*mismatch_low <= 0) exit
+      if (mismatch < huge(1.0_wp) .and. mismatch_low < huge(1.0_wp) .and. &
+        (mismatch > 0 .neqv. mismatch_low > 0)) exit
       low = high
       mismatch_low = mismatch
     end do
@@ -116,7 +117,7 @@ contains
     do i = 1, 50
       angle = 0.5_wp*(low + high)
       mismatch = mismatch_of_turns(gamma, mach, wedge, angle)
-      if (mismatch*mismatch_low > 0) then
+      if (mismatch > 0 .eqv. mismatch_low > 0) then
         low = angle
       else
         high = angle

@@ -1,6 +1,6 @@
 !> Small scenes of solids for tests: a deck put together in code, and what is made of it.
 module solid_scenes
-  use deck_types, only: deck_type, material_group, body_group
+  use deck_types, only: number_bodies, deck_type, material_group, body_group
   use halo, only: halo_type, plan_halo
   use kinds, only: wp
   use mesh, only: mesh_type, build_mesh
@@ -130,6 +130,7 @@ contains
     if (present(periodic)) wraps = periodic
     call build_mesh(scene%mesh, cells, lower, upper, brick, wraps, 2)
     call plan_halo(scene%mesh, scene%halo)
+    call number_bodies(scene%deck)
     call setup_solid(scene%mesh, scene%deck, scene%solid, scene%pieces, loaded)
     call project_solid(scene%mesh, scene%halo, scene%solid)
   end subroutine start_scene
