@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What tools/bench reads from the lines of flow_bench, and that it refuses what it does not know.
-# timeout: 60
+# What tools/bench reads from the lines of flow_bench, the trade-off of a small scene, and that it refuses what it does not know.
+# timeout: 120
 set -u
 source_folder=${BRISANCE_SOURCE:-$(cd "$(dirname "$0")/../../.." && pwd)}
 passed=0 failed=0
@@ -30,9 +30,19 @@ assert ordered(["b", "a", "b"]) == ["b", "a"]
 assert markdown(["x", "y"], [["1", "2"]]) == "| x | y |\n|---|---|\n| 1 | 2 |\n"
 END
 refuses() { ! bash "$source_folder/tools/bench" "$@" >/dev/null 2>&1; }
+tradeoff() ( # tradeoff SCENE: its sweep, by the program of this build
+  source "$source_folder/tools/setup.sh"
+  setup_python >/dev/null || exit 1
+  OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_plm=isolated OMPI_MCA_ess_singleton_isolated=1 \
+    "$python" "$source_folder/tools/benching" tradeoff . --case "$1" --quick
+)
+sweeps() { tradeoff piston >/dev/null && grep -q '^| moving_wall, 200x1x1 |.*| [+-]0.0[0-9] % |$' tradeoff.md && [ -s tradeoff_piston.png ]; }
+knows_scenes() { tradeoff nothing 2>&1 >/dev/null | grep -q 'no scene nothing'; }
 explains() { bash "$source_folder/tools/bench" --help | grep -q -e '--schemes'; }
 
 check "lines are read" "${PYTHON:-python3}" read.py "$source_folder"
+check "trade-off" sweeps
+check "unknown scene" knows_scenes
 check "help" explains
 check "no command" refuses
 check "unknown command" refuses dance
