@@ -103,7 +103,8 @@ contains
   !> Gives the memory of a coupling back that is needed no more; the books stay.
   subroutine release_coupling(coupling)
     type(coupling_type), intent(inout) :: coupling
-    deallocate (coupling%occupancy, coupling%kind, coupling%kind_before, coupling%list, coupling%force, coupling%solid_part)
+    deallocate (coupling%occupancy, coupling%kind, coupling%kind_before, coupling%list, coupling%force, coupling%solid_part, &
+                coupling%near, coupling%near_now)
   end subroutine release_coupling
 
   !> Gives arrays to the bricks that the solid concerns and takes them from the others.

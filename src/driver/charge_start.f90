@@ -26,7 +26,7 @@ contains
   subroutine start_charges(scene)
     type(scene_type), intent(inout) :: scene
     type(unit_labels_type) :: labels
-    real(wp) :: stop(size(scene%deck%charge)), time
+    real(wp) :: stop_radius(size(scene%deck%charge)), time
     logical :: is_read(size(scene%deck%charge))
     integer, allocatable :: list(:)
     integer :: c, i
@@ -37,16 +37,16 @@ contains
     allocate (scene%blast(size(list)))
     associate (deck => scene%deck, blast => scene%blast)
       do i = 1, size(list)
-        stop(i) = stop_of(deck, list(i))
+        stop_radius(i) = stop_of(deck, list(i))
         blast(i)%center = deck%charge(list(i))%center
       end do
-      call find_blasts(deck, list, stop(:size(list)), blast, is_read(:size(list)), time)
+      call find_blasts(deck, list, stop_radius(:size(list)), blast, is_read(:size(list)), time)
       call check_later_charges(deck, time)
       do i = 1, size(list)
         c = list(i)
         call map_profile(scene%mesh, scene%flow, blast(i)%profile, blast(i)%center)
         if (deck%charge(c)%start_file /= '' .and. .not. is_read(i)) call write_start_file(trim(deck%charge(c)%start_file), &
-          blast(i)%profile, fingerprint_of_start(deck, c), stop(i))
+          blast(i)%profile, fingerprint_of_start(deck, c), stop_radius(i))
         call say('start of charge '//str(c)//': its wave has come to the radius '//str(blast(i)%profile%front, 5)//' '// &
                  trim(labels%length)//' at '//str(time, 6)//' '//trim(labels%time)//origin(deck%charge(c)%start_file, is_read(i)))
       end do
@@ -65,19 +65,19 @@ contains
     if (file /= '' .and. .not. is_read) text = ', kept in '//trim(file)
   end function origin
 
-  real(wp) function stop_of(deck, c) result(stop)
+  real(wp) function stop_of(deck, c) result(stop_radius)
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: c
     character(:), allocatable :: obstacle
-    stop = deck%charge(c)%start_stop
-    if (.not. stop > unset) call reach_of_charge(deck, c, stop, obstacle)
+    stop_radius = deck%charge(c)%start_stop
+    if (.not. stop_radius > unset) call reach_of_charge(deck, c, stop_radius, obstacle)
   end function stop_of
 
   !> The blasts of the charges in the list, all at one time: when the first of them has come to its stop.
-  subroutine find_blasts(deck, list, stop, blast, is_read, time)
+  subroutine find_blasts(deck, list, stop_radius, blast, is_read, time)
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: list(:)
-    real(wp), intent(in) :: stop(:)
+    real(wp), intent(in) :: stop_radius(:)
     type(blast_type), intent(inout) :: blast(:)
     logical, intent(out) :: is_read(:)
     real(wp), intent(out) :: time
@@ -86,26 +86,26 @@ contains
     do i = 1, size(list)
       is_read(i) = .false.
       if (deck%charge(list(i))%start_file /= '') is_read(i) = start_file_exists(trim(deck%charge(list(i))%start_file))
-      if (is_read(i)) call take_from_file(deck, list(i), stop(i), blast(i)%profile)
+      if (is_read(i)) call take_from_file(deck, list(i), stop_radius(i), blast(i)%profile)
       if (is_read(i)) time = min(time, blast(i)%profile%time)
     end do
     do i = 1, size(list)
-      if (.not. is_read(i)) blast(i)%profile = run_radially(deck, list(i), stop(i), time)
+      if (.not. is_read(i)) blast(i)%profile = run_radially(deck, list(i), stop_radius(i), time)
       time = min(time, blast(i)%profile%time)
     end do
     do i = 1, size(list)
       if (.not. blast(i)%profile%time > time) cycle
       if (is_read(i)) call fatal('start_file '''//trim(deck%charge(list(i))%start_file)//''' is of the time '// &
         str(blast(i)%profile%time, 6)//', but another charge of the deck enters the scene at '//str(time, 6), exit_bad_input)
-      blast(i)%profile = run_radially(deck, list(i), stop(i), time)
+      blast(i)%profile = run_radially(deck, list(i), stop_radius(i), time)
     end do
   end subroutine find_blasts
 
   !> The blast of charge c from its file. Fatal (bad input) where it does not fit the deck.
-  subroutine take_from_file(deck, c, stop, profile)
+  subroutine take_from_file(deck, c, stop_radius, profile)
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: c
-    real(wp), intent(in) :: stop
+    real(wp), intent(in) :: stop_radius
     type(radial_profile_type), intent(out) :: profile
     character(:), allocatable :: obstacle
     real(wp) :: stopped_at, reach
@@ -114,7 +114,7 @@ contains
       call reach_of_charge(deck, c, reach, obstacle)
       if (profile%front > reach + 2*profile%thickness) call refuse('its wave has come to '//str(profile%front, 5)// &
         ', but here it meets '//obstacle//' after '//str(reach, 5))
-      if (charge%start_stop > unset .and. abs(stopped_at - stop) > 1e-9_wp*stop) call refuse('it was stopped at '// &
+      if (charge%start_stop > unset .and. abs(stopped_at - stop_radius) > 1e-9_wp*stop_radius) call refuse('it was stopped at '// &
         str(stopped_at, 5)//', not at start_stop')
       if (charge%start_cells > 0 .and. abs(profile%thickness*charge%start_cells - charge_radius(deck, c)) > &
           1e-9_wp*charge_radius(deck, c)) call refuse('its mesh has other cells than start_cells says')

@@ -11,7 +11,7 @@ module main_loop
   use solid_load, only: load_particles
   use solid_step, only: advance_solid
   use stage_changes, only: review_stages
-  use stages, only: note_load
+  use stages, only: hold_load, note_load
   use time_step, only: choose_time_step, flow_part
   implicit none
   private
@@ -60,8 +60,7 @@ contains
       call hold_solid(scene%flow, scene%coupling)
     else
       call immerse_solid(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling)
-      call find_wall_velocity(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling, &
-                              scene%clock%dt)
+      call find_wall_velocity(scene%mesh, scene%halo, scene%solid, scene%flow, scene%coupling, scene%clock%dt)
       scene%stages%solid_met = .true.
     end if
     call scene%watch%stop('coupling')
@@ -101,6 +100,7 @@ contains
     call note_load(scene%stages, scene%mesh, scene%coupling, time, scene%clock%dt)
     if (scene%loads%active) call gather_loads(scene%loads, scene%mesh, scene%solid, scene%coupling%list, scene%coupling%face, &
                                               time, scene%clock%dt)
+    if (.not. scene%solid_runs()) call hold_load(scene%coupling, scene%solid)
     call scene%watch%stop('loads')
   end subroutine note_loads
 

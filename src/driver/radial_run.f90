@@ -44,13 +44,13 @@ module radial_run
 
 contains
 
-  !> Runs charge c until its wave has reached the radius `stop` and all of it has burnt, or until `latest`, whichever comes first.
+  !> Runs charge c until its wave has reached `stop_radius` and all of it has burnt, or until `latest`, whichever comes first.
   !> To be called by all ranks, who share the work; the same bits on any number of them. Fatal (bad input) where neither comes
   !> before the end of the deck's run.
-  function run_radially(deck, c, stop, latest) result(profile)
+  function run_radially(deck, c, stop_radius, latest) result(profile)
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: c
-    real(wp), intent(in) :: stop, latest
+    real(wp), intent(in) :: stop_radius, latest
     type(radial_profile_type) :: profile
     type(radial_run_type) :: run
     real(wp) :: front, disturbed
@@ -64,10 +64,10 @@ contains
     do
       associate (scene => run%scene, flow => run%scene%flow)
         call find_wave(run, front, disturbed)
-        if (front >= stop .and. (flow%time > flow%burn_end .or. .not. flow%burn_total > 0)) exit
+        if (front >= stop_radius .and. (flow%time > flow%burn_end .or. .not. flow%burn_total > 0)) exit
         if (scene%clock%time >= latest) exit
         if (scene%clock%time >= deck%run%end_time) call fatal('charge '//str(c)//': at the end of the run, '// &
-          str(scene%clock%time)//', its wave has come to '//str(front)//' only, not to '//str(stop)// &
+          str(scene%clock%time)//', its wave has come to '//str(front)//' only, not to '//str(stop_radius)// &
           ', where it is to enter the scene', exit_bad_input)
         if (front > (cells - margin)*scene%mesh%spacing(1)) then
           call grow(run, deck, c, 2*cells)

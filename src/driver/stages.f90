@@ -11,11 +11,12 @@ module stages
   use particles, only: at_energy, at_mass, at_velocity
   use reductions, only: any_rank, reduce_sum
   use rigid_bodies, only: all_fixed
-  use solid_state, only: solid_type, book_lost_kinetic, book_lost_momentum
+  use solid_state, only: solid_type, book_coupling_impulse, book_impulse, book_lost_kinetic, book_lost_momentum, &
+    n_supports
   use time_record, only: record_type
   implicit none
   private
-  public :: start_stages, note_load, note_motion, flow_has_faded, solid_rests, arrest_solid, pack_stages, unpack_stages
+  public :: start_stages, note_load, hold_load, note_motion, flow_has_faded, solid_rests, arrest_solid, pack_stages, unpack_stages
 
   real(wp), parameter :: round_off = 1e-12_wp !< of the reference pressure on a cell's face: what still fluid may seem to do
 
@@ -90,6 +91,23 @@ contains
       stages%solid_started = time - dt
     end if
   end subroutine note_load
+
+  !> What the flow has given in a step to a solid that does not run goes to what holds it: the last of its supports.
+  subroutine hold_load(coupling, solid)
+    type(coupling_type), intent(in) :: coupling
+    type(solid_type), intent(inout) :: solid
+    integer, parameter :: held = book_impulse + 3*(n_supports - 1)
+    real(wp) :: impulse(3)
+    integer :: b
+    do b = 1, size(coupling%list)
+      if (coupling%list(b)%n == 0) cycle
+      impulse = sum(coupling%list(b)%impulse, dim=2)
+      associate (books => solid%books(:, b))
+        books(book_coupling_impulse:book_coupling_impulse + 2) = books(book_coupling_impulse:book_coupling_impulse + 2) + impulse
+        books(held:held + 2) = books(held:held + 2) - impulse
+      end associate
+    end do
+  end subroutine hold_load
 
   !> The loads have faded, or the time set for it has come. part: what the second half of the time since the first load brought, of
   !> all. A load that falls like a power of time, of exponent two or more, has no more than that still to come.

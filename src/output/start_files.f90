@@ -27,17 +27,17 @@ contains
   end function start_file_exists
 
   !> Writes a profile. fingerprint: of all that it depends on; stop: radius that the run was to stop at. To be called by all ranks.
-  subroutine write_start_file(name, profile, fingerprint, stop)
+  subroutine write_start_file(name, profile, fingerprint, stop_radius)
     character(*), intent(in) :: name, fingerprint
     type(radial_profile_type), intent(in) :: profile
-    real(wp), intent(in) :: stop
+    real(wp), intent(in) :: stop_radius
     type(hdf5_file) :: file
     call create_file(file, name//'.part')
     call put_attribute(file, '/', 'kind', kind)
     call put_attribute(file, '/', 'fingerprint', fingerprint)
     call put_attribute(file, '/', 'radial_power', [profile%radial_power])
     call put_attribute(file, '/', 'rows', [size(profile%state, 1)])
-    call put_attribute(file, '/', 'figures', [profile%thickness, profile%time, profile%front, profile%afterburnt, stop])
+    call put_attribute(file, '/', 'figures', [profile%thickness, profile%time, profile%front, profile%afterburnt, stop_radius])
     call put_whole(file, 'state', reshape(profile%state, [size(profile%state)]), size(profile%state, 1))
     call put_whole(file, 'felt', reshape(profile%felt, [size(profile%felt)]), n_felt)
     call put_attribute(file, '/', 'gauges', [size(profile%gauge)])
@@ -51,16 +51,16 @@ contains
   end subroutine write_start_file
 
   !> Reads a profile. Fatal (bad input) where the file is no such file or was computed from something else. stop: as it was written.
-  subroutine read_start_file(name, profile, fingerprint, stop)
+  subroutine read_start_file(name, profile, fingerprint, stop_radius)
     character(*), intent(in) :: name, fingerprint
     type(radial_profile_type), intent(out) :: profile
-    real(wp), intent(out) :: stop
+    real(wp), intent(out) :: stop_radius
     type(hdf5_file) :: file
     character(:), allocatable :: found
     real(wp) :: figures(5)
     real(wp), allocatable :: values(:)
     integer :: power(1), rows(1), n
-    stop = 0
+    stop_radius = 0
     call open_file(file, name)
     call get_attribute(file, '/', 'kind', found)
     if (found /= kind) call refuse('is not the start of a charge as this program writes it')
@@ -76,7 +76,7 @@ contains
     profile%time = figures(2)
     profile%front = figures(3)
     profile%afterburnt = figures(4)
-    stop = figures(5)
+    stop_radius = figures(5)
     allocate (values(rows(1)*n))
     call get_slab(file, 'state', values, 0_int64, rows(1))
     profile%state = reshape(values, [rows(1), n])
