@@ -10,19 +10,22 @@ import perforation  # noqa: E402
 import shock_helium  # noqa: E402
 import shock_panel  # noqa: E402
 import slab  # noqa: E402
+import slab_particles  # noqa: E402
 import surface_burst  # noqa: E402
 import taylor  # noqa: E402
 from taylor_reference import measure_reference  # noqa: E402
 
-MEASURES = {"shock-helium": shock_helium.measure, "slab": slab.measure}
+MEASURES = {"slab": slab.measure}
 TOGETHER = {"fragments": fragments.measure_all, "particle-blast": particle_blast.measure_all, "perforation": perforation.measure_all,
-            "shock-panel": shock_panel.measure_all, "surface-burst": surface_burst.measure_all, "taylor": taylor.measure_all}  # all runs side by side
+            "shock-helium": shock_helium.measure_all, "shock-panel": shock_panel.measure_all,
+            "slab-particles": slab_particles.measure_all, "surface-burst": surface_burst.measure_all,
+            "taylor": taylor.measure_all}  # all runs side by side
 
 if len(sys.argv) > 2 and sys.argv[1] == "taylor-reference":
     measure_reference(sys.argv[2:])
     sys.exit()
 if len(sys.argv) < 3 or sys.argv[1] not in {**MEASURES, **TOGETHER}:
-    sys.exit("usage: tools/measure fragments|particle-blast|perforation|shock-helium|shock-panel|slab|surface-burst|taylor RUN_FOLDER...\n"
+    sys.exit("usage: tools/measure fragments|particle-blast|perforation|shock-helium|shock-panel|slab|slab-particles|surface-burst|taylor RUN_FOLDER...\n"
              "       tools/measure taylor-reference VELOCITY [ELEMENTS [jc_a=157e6 ...]]")
 folders = [pathlib.Path(folder) for folder in sys.argv[2:]]
 if sys.argv[1] in TOGETHER:
