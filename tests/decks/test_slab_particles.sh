@@ -20,8 +20,8 @@ drift() { sed -n "/\"drift\"/,/}/s/.*\"$2\": \([-+.E0-9]*\).*/\1/p" "$1/summary.
 checksum() { sed -n 's/.*"state_checksum": "\(.*\)".*/\1/p' "$1/summary.json"; }
 figure() { awk -F'|' -v name="$1" -v c="$2" 'index($2, name) { print $c + 0 }' table.md; }
 
-small="--set mesh%cells=19,19,19 --set body(1)%spacing=0.01"
-alone="$small --set body(2)%spacing=0.004 --set body(3)%spacing=0.016"
+small="--set mesh%cells=16,16,16 --set body(1)%spacing=0.01"
+alone="$small --set body(2)%spacing=0.005 --set body(3)%spacing=0.019"
 run() { # run DECK FOLDER OPTIONS...: coarse, until the blast has met the slab
   local deck=$1 folder=$2
   shift 2

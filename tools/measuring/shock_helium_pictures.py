@@ -57,14 +57,16 @@ def schlieren_sheet(courses, picture):
 
 def wave_diagram(courses, table, picture):
     """Positions over time, all and the first 250 us, with the speeds of the experiment as short straight lines."""
-    figure, panels = plt.subplots(1, 2, figsize=(11.0, 5.4), layout="constrained")
+    figure, panels = plt.subplots(1, 2, figsize=(10.5, 5.4), layout="constrained")
     for panel, last in zip(panels, (250, 1000)):
         for name, (label, colour) in FEATURES.items():
             for n, course in enumerate(courses):
                 position = course.position[name]
                 shown = np.isfinite(position) & (course.times > -20) & (course.times < last)
                 if name == "front_on_axis":
-                    shown &= position < 203
+                    shown &= position < 201
+                if name == "shock_by_the_wall":
+                    shown &= course.times < 100  # then waves off the bubble lead there
                 if name == "vortex_centre":
                     shown &= course.times > 100
                 panel.plot(position[shown], course.times[shown], color=colour, label=label if n == 0 else None, **STYLES[n % len(STYLES)])
@@ -83,5 +85,5 @@ def wave_diagram(courses, table, picture):
     panels[1].plot([], [], color="black", linewidth=4, alpha=0.22, label="speed in the experiment")
     for n, course in enumerate(courses if len(courses) > 1 else []):
         panels[1].plot([], [], color="black", label=course.name.replace("_", " "), **STYLES[n % len(STYLES)])
-    panels[1].legend(loc="upper right")
+    figure.legend(*panels[1].get_legend_handles_labels(), loc="outside lower center", ncol=3)
     return save(figure, picture)

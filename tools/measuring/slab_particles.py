@@ -34,7 +34,10 @@ class State:
 
     def __init__(self, folder, time):
         self.name = folder.name
-        self.solid = open_snapshot(by_time(folder, "solid")[round(1e6 * time)])
+        solids = by_time(folder, "solid")
+        if round(1e6 * time) not in solids:
+            raise SystemExit(f"error: {folder} has no snapshot of the solid at {1e3 * time:g} ms")
+        self.solid = open_snapshot(solids[round(1e6 * time)])
         bodies = [name.strip() for name in self.solid.bodies]
         self.is_fluid = np.isin(self.solid.field("body"), [i + 1 for i, name in enumerate(bodies) if name in FLUIDS])
         flows = by_time(folder, "flow")
@@ -129,7 +132,7 @@ def deflections(folders, picture):
 
 
 def measure_all(folders):
-    """A table, and a picture of the pressure with a row for each run, into the folder of the last run."""
+    """A table, and a picture of the pressure with a column for each run, into the folder of the last run."""
     states = [[State(folder, time) for time in TIMES] for folder in folders]
     print("| | " + " | ".join(f"{row[0].name}, {1e3 * t:.2f} ms" for t in TIMES for row in states) + " |")
     print("|" + "---|" * (1 + len(TIMES) * len(states)))
@@ -137,13 +140,14 @@ def measure_all(folders):
     for k, (head, form) in enumerate(HEADS):
         print(f"| {head} | " + " | ".join(form.format(row[t][k]) for t in range(len(TIMES)) for row in figures) + " |")
     norm = LogNorm(*RANGE)
-    figure, panels = plt.subplots(len(folders), len(TIMES), figsize=(8.0, 0.3 + 3.5 * len(folders)), squeeze=False, layout="constrained")
-    for axes_row, row in zip(panels, states):
-        for axes, state, time in zip(axes_row, row, TIMES):
+    figure, panels = plt.subplots(len(TIMES), len(folders), figsize=(0.8 + 2.9 * len(folders), 6.0), squeeze=False, layout="constrained")
+    for column, row in enumerate(states):
+        for axes, state, time in zip(panels[:, column], row, TIMES):
             state.draw(axes, norm)
-            axes.set_title(f"{state.name.replace('_', ' ')}, t = {1e3 * time:.2f} ms", loc="left")
+            axes.set_title(f"{state.name.replace('_', ' ')}, {1e3 * time:.2f} ms", loc="left")
             axes.set_xlabel("x [m]")
             axes.set_ylabel("z [m]")
+            axes.label_outer()
     colour_bar(figure, plt.cm.ScalarMappable(norm, COLOURS["pressure"]), list(panels.flat), "pressure [MPa]", fraction=0.03)
     pictures = folders[-1] / "pictures"
     pictures.mkdir(parents=True, exist_ok=True)
