@@ -205,7 +205,7 @@ contains
       if (.not. allocated(open%a)) then
         call allocate_cells(open, mesh%brick_cells, mesh%ghost, 1, 1.0_wp)
         call allocate_cells(wall_impulse, mesh%brick_cells, mesh%ghost, 3, 0.0_wp)
-        if (moving) call allocate_cells(wall, mesh%brick_cells, mesh%ghost, 6, 0.0_wp)
+        if (moving) call allocate_cells(wall, mesh%brick_cells, mesh%ghost, 12, 0.0_wp)
       end if
       open%a = merge(0.0_wp, 1.0_wp, kind%a > closed_from)
       wall_impulse%a = 0
@@ -399,12 +399,10 @@ contains
           flow%wall(b)%a(cell(1), 1:3, cell(2), cell(3)) = coupling%list(b)%velocity(:, c)
         end associate
       end do
+      call wall_normals(mesh%brick_cells, mesh%active, mesh%ghost, mesh%spacing, coupling%solid_part(b)%a(:, 1, :, :), &
+                        coupling%kind(b)%a(:, 1, :, :) > coupling%closed_from, flow%wall(b)%a)
     end do
-    call fill(mesh, halo, flow%wall, 3, only_faces=.true.)
-    do b = 1, mesh%n_local
-      if (allocated(flow%wall(b)%a)) call wall_normals(mesh%brick_cells, mesh%active, mesh%ghost, mesh%spacing, &
-        coupling%solid_part(b)%a(:, 1, :, :), coupling%kind(b)%a(:, 1, :, :) > coupling%closed_from, flow%wall(b)%a)
-    end do
+    call fill(mesh, halo, flow%wall, 12, only_faces=.true.)
   end subroutine set_walls
 
   !> Forces the state that the step starts from: the solid has moved since the last stage.
