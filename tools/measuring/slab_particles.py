@@ -8,15 +8,18 @@ import numpy as np
 from matplotlib.colors import LogNorm
 
 from flow_pictures import draw_outline
+from slab import SlabAlone
 from snapshot_files import open_snapshot
-from solid_pictures import paint, view_frame
-from style import COLOURS, colour_bar, plt, save
+from solid_pictures import draw_section, draw_view, paint, view_frame
+from style import COLOURS, colour_bar, plt, save, time_text
 
 TIMES = (0.08e-3, 0.18e-3)  # s, those of Ni et al. 2022
 RANGE = (0.05, 20.0)  # MPa
 AMBIENT = 0.101325  # MPa
 NEAR = 0.06  # m from the axis, and from the front face: the air before the slab
 FLUIDS = ("air", "charge")
+VIEW = (-0.58, 0.58, -0.53, 0.53)  # m, of the slab seen from its front or back
+SECTION = (0.0, 0.56, 0.38, 0.54)
 
 
 def by_time(folder, kind):
@@ -131,8 +134,26 @@ def deflections(folders, picture):
     return save(figure, picture)
 
 
+def damage(folders, picture):
+    """Front, back and a section of the slab at the last time that all runs have, a row for each run."""
+    files = [by_time(folder, "solid") for folder in folders]
+    last = max(set(files[0]).intersection(*files[1:]))
+    figure, panels = plt.subplots(len(folders), 3, figsize=(11.0, 0.3 + 2.5 * len(folders)), squeeze=False, layout="constrained")
+    for row, folder, found in zip(panels, folders, files):
+        slab = SlabAlone(open_snapshot(found[last]))
+        mirror = {d: slab.lower[d] for d in (0, 1)}
+        for axes, (what, direction) in zip(row, (("front", -1.0), ("back", 1.0))):
+            mappable, _ = draw_view(axes, slab, "damage", np.array([0.0, 0.0, direction]), mirror, bounds=VIEW)
+            axes.set_title(f"{folder.name.replace('_', ' ')}, {what}", loc="left")
+        draw_section(row[2], slab, "damage", 1, slab.lower[1] + 0.5 * slab.size(), mirror, bounds=SECTION)
+        row[2].set_aspect("auto")
+        row[2].set_title(f"section, y = 0, {time_text(slab.time, slab.time_unit)}", loc="left")
+    colour_bar(figure, mappable, list(panels.flat), "damage", fraction=0.02)
+    return save(figure, picture)
+
+
 def measure_all(folders):
-    """A table, and a picture of the pressure with a column for each run, into the folder of the last run."""
+    """A table, and pictures of pressure, deflection and damage with a column or a row for each run, into the folder of the last run."""
     states = [[State(folder, time) for time in TIMES] for folder in folders]
     print("| | " + " | ".join(f"{row[0].name}, {1e3 * t:.2f} ms" for t in TIMES for row in states) + " |")
     print("|" + "---|" * (1 + len(TIMES) * len(states)))
@@ -151,4 +172,5 @@ def measure_all(folders):
     colour_bar(figure, plt.cm.ScalarMappable(norm, COLOURS["pressure"]), list(panels.flat), "pressure [MPa]", fraction=0.03)
     pictures = folders[-1] / "pictures"
     pictures.mkdir(parents=True, exist_ok=True)
-    print("\npictures:", save(figure, pictures / "slab_particles_pressure.png"), deflections(folders, pictures / "slab_particles_deflection.png"))
+    print("\npictures:", save(figure, pictures / "slab_particles_pressure.png"), deflections(folders, pictures / "slab_particles_deflection.png"),
+          damage(folders, pictures / "slab_particles_damage.png"))
