@@ -1,10 +1,10 @@
-"""Peak overpressure, impulse and arrival on a facade beside a charge on the ground, in the cells before the wall, against the curves
-of Kingery & Bulmash for hemispherical surface bursts: a table of points, and a picture of the impulse.
+"""Peak overpressure, impulse and arrival on a facade beside a charge on the ground, in the cells before the wall, against the
+curves of Kingery & Bulmash for hemispherical surface bursts: a table of points, and a picture of the impulse.
 
-Oblique points have what LOAD_BLAST and ConWep take: y_r cos(a)^2 + y_i (1 + cos(a)^2 - 2 cos(a)) of the reflected and the incident
-pressure or impulse at the slant distance, a between the ray and the normal of the wall (Randers-Pehrson & Bannister, Airblast
-loading model for DYNA2D and DYNA3D, ARL-TR-1310, 1997). It knows of no edges and no openings. The charge is at (0, 0, 0), the
-wall across x."""
+Oblique points have two references at the slant distance: the curves of normal reflection, and what ConWep and LOAD_BLAST make of
+them, y_r cos(a)^2 + y_i (1 + cos(a)^2 - 2 cos(a)) of the reflected and the incident pressure or impulse, a between the ray and the
+normal of the wall (Randers-Pehrson & Bannister, Airblast loading model for DYNA2D and DYNA3D, ARL-TR-1310, 1997). Neither knows of
+edges and openings. The charge is at (0, 0, 0), the wall across x."""
 import pathlib
 import re
 
@@ -36,16 +36,19 @@ def facade(folder):
             "mass": hemisphere(folder), **maps}
 
 
-def rule(run, y, z):
-    """Reflected peak [kPa], impulse [kPa ms], arrival [ms] that the curves give at a point of the wall, and its angle in degrees."""
+def reference(run, y, z):
+    """Angle at a point of the wall [degrees], and what the curves give there: peak [kPa] and impulse [kPa ms], each by the rule for
+    oblique points and as if it were normal, and arrival [ms]."""
     slant = np.sqrt(run["distance"] ** 2 + y ** 2 + z ** 2)
     cosine = run["distance"] / slant
     root = run["mass"] ** (1 / 3)
     distance = slant / root
-    oblique = 1 + cosine ** 2 - 2 * cosine
-    peak = curve("reflected pressure", distance) * cosine ** 2 + curve("pressure", distance) * oblique
-    impulse = root * (curve("reflected impulse", distance) * cosine ** 2 + curve("impulse", distance) * oblique)
-    return peak, impulse, root * curve("arrival", distance), np.degrees(np.arccos(cosine))
+    incident = 1 + cosine ** 2 - 2 * cosine
+    peak = curve("reflected pressure", distance)
+    impulse = root * curve("reflected impulse", distance)
+    return {"angle": np.degrees(np.arccos(cosine)), "peak": peak, "impulse": impulse, "arrival": root * curve("arrival", distance),
+            "oblique peak": peak * cosine ** 2 + incident * curve("pressure", distance),
+            "oblique impulse": impulse * cosine ** 2 + incident * root * curve("impulse", distance)}
 
 
 def at(run, name, y, z):
@@ -56,25 +59,23 @@ def at(run, name, y, z):
 def table(run):
     """Prints the points of one run, as a table in Markdown."""
     print(f"{run['folder']}: {run['mass']:g} kg at {run['distance']:g} m, cells of {1e3 * run['h']:.0f} mm\n")
-    print("| y, z [m] | angle | peak overpressure [kPa] | curve | | impulse [kPa ms] | curve | | arrival [ms] | curve | |")
-    print("|" + "---|" * 11)
-    ratios = []
+    print("| y, z [m] | angle | peak [kPa] | oblique | normal | impulse [kPa ms] | oblique | normal | arrival [ms] | curve |")
+    print("|" + "---|" * 10)
     for y, z in POINTS:
-        found = at(run, "peak_overpressure", y, z) / 1e3, at(run, "impulse", y, z), 1e3 * at(run, "arrival_time", y, z)
-        *expected, angle = rule(run, (int(y / run["h"]) + 0.5) * run["h"], (int(z / run["h"]) + 0.5) * run["h"])
-        cells = [f"{a:.4g} | {b:.4g} | {100 * (a / b - 1):+.0f} %" for a, b in zip(found, expected)]
-        ratios.append([a / b for a, b in zip(found, expected)])
-        print(f"| {y:g}, {z:g} | {angle:.0f} | " + " | ".join(cells) + " |")
-    whole = run["impulse"].copy()
-    grid_y, grid_z = np.meshgrid(run["y"], run["z"])
-    expected = np.vectorize(lambda y, z: rule(run, y, z)[1])(grid_y, grid_z)
-    on_wall = np.isfinite(whole)
-    area = 2 * run["h"] ** 2
-    found, by_curves = whole[on_wall].sum() * area / 1e3, expected[on_wall].sum() * area / 1e3
-    peak, impulse, arrival = np.mean(ratios, axis=0)
-    print(f"\nimpulse of the whole wall {found:.2f} kN s, by the curves {by_curves:.2f} kN s ({100 * (found / by_curves - 1):+.0f} %); "
-          f"mean of the ratios above: peak {peak:.2f}, impulse {impulse:.2f}, arrival {arrival:.2f}\n")
-    run["ratio"] = whole / expected
+        expected = reference(run, *((int(v / run["h"]) + 0.5) * run["h"] for v in (y, z)))
+        found = {"peak": at(run, "peak_overpressure", y, z) / 1e3, "impulse": at(run, "impulse", y, z),
+                 "arrival": 1e3 * at(run, "arrival_time", y, z)}
+        cells = [f"{y:g}, {z:g}", f"{expected['angle']:.0f}"]
+        for name, value in found.items():
+            others = [expected[key] for key in (f"oblique {name}", name) if key in expected]
+            cells += [f"{value:.4g}"] + [f"{other:.4g} ({100 * (value / other - 1):+.0f} %)" for other in others]
+        print("| " + " | ".join(cells) + " |")
+    expected = [[reference(run, y, z) for y in run["y"]] for z in run["z"]]
+    closed = np.isfinite(run["impulse"])
+    sums = [2 * run["h"] ** 2 / 1e3 * values[closed].sum() for values in (
+        run["impulse"], *(np.array([[point[key] for point in row] for row in expected]) for key in ("oblique impulse", "impulse")))]
+    print(f"\nimpulse of the whole wall {sums[0]:.2f} kN s; curves, oblique, {sums[1]:.2f} kN s; as if normal {sums[2]:.2f} kN s\n")
+    run["ratio"] = run["impulse"] / np.array([[point["oblique impulse"] for point in row] for row in expected])
 
 
 def draw_map(figure, panel, run, values, title, colours, limits):
@@ -98,10 +99,11 @@ def measure_all(folders):
     figure = plt.figure(figsize=(10.5, 5.2), constrained_layout=True)
     left, right = figure.subplots(2, 2, width_ratios=(1.5, 1)).T
     draw_map(figure, left[0], run, run["impulse"], "impulse [Pa s]", "inferno", (0, np.nanmax(run["impulse"])))
-    draw_map(figure, left[1], run, run["ratio"], "impulse over that of the curves", "RdBu_r", (0.5, 1.5))
+    draw_map(figure, left[1], run, run["ratio"], "impulse over that of the curves, oblique", "RdBu_r", (0.5, 1.5))
     for panel, place in zip(right, (0.0, 1.5)):
         z = np.linspace(0, run["height"], 200)
-        panel.plot(z, [rule(run, place, v)[1] for v in z], color="#6b6b6b", label="Kingery & Bulmash, oblique")
+        panel.plot(z, [reference(run, place, v)["oblique impulse"] for v in z], color="#6b6b6b", label="Kingery & Bulmash, oblique")
+        panel.plot(z, [reference(run, place, v)["impulse"] for v in z], "--", color="#6b6b6b", label="the same, as if normal")
         for i, other in enumerate(runs):
             column = min(int(place / other["h"]), len(other["y"]) - 1)
             panel.plot(other["z"], other["impulse"][:, column], color=LINES[i % len(LINES)],
