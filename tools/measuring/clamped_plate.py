@@ -70,7 +70,8 @@ def plate(folder):
     mass = density * width ** 2 * thickness
     frequency = impulse / mass / (0.471 * rigid / (2 * width) * thickness)
     steps, at_step = np.diff(4 * share), 0.5 * (load["time [s]"][1:] + load["time [s]"][:-1])
-    oscillator = mode * max(np.sum(steps * np.sin(frequency * (t - at_step)) * (t > at_step)) / (mass * frequency) for t in time[::5])
+    answers = [np.sum(steps * np.sin(frequency * (t - at_step)) * (t > at_step)) for t in time[::5]]
+    oscillator = mode * max(answers) / (mass * frequency)
     rest = way[time > time[top] + 0.25 * (time[-1] - time[top])].mean()
     return {"folder": folder, "time": time, "way": way, "thickness": thickness, "impulse": impulse, "number": rigid / (2 * width),
             "number_of_a_circle": rigid / (np.sqrt(np.pi) * width), "largest": way[top], "at": time[top], "rest": rest,

@@ -39,6 +39,11 @@ def column(folder):
         lost = np.bincount(height[part & failed], minlength=height.max() + 1)
         return 2 * pitch * np.count_nonzero(lost > share * np.maximum(all_of, 1))
 
+    # what parts from the bars before it: concrete of the back cover and bars behind the charge
+    late = start[found]
+    behind = (late[:, 0] > high[0] - 0.06) & (late[:, 1] < 0.06) & (late[:, 2] < 0.06)
+    cover = behind & concrete[found] & (late[:, 0] > high[0] - 0.04)
+    parting = last.field("velocity_x")[cover].mean() - last.field("velocity_x")[behind & ~concrete[found]].mean()
     on_axis = concrete & (start[:, 1] < 0.03) & (start[:, 2] < 0.03)
     layer = np.floor((start[on_axis, 0] - low[0]) / pitch).astype(int)
     broken = np.bincount(layer, failed[on_axis]) >= 0.5 * np.maximum(np.bincount(layer), 1)
@@ -48,7 +53,7 @@ def column(folder):
             "front": length(start[:, 0] < low[0] + pitch, 0.5), "back": length(start[:, 0] > high[0] - pitch, 0.5),
             "side": length(start[:, 1] > high[1] - pitch, 0.5), "through": length(concrete, 0.95),
             "whole on the axis": (whole[0] * pitch, whole[-1] * pitch + pitch) if len(whole) else None,
-            "failed": failed[concrete].mean(), "thrown": 4 * np.median(first.field("volume")[order][concrete])
+            "failed": failed[concrete].mean(), "parting": parting, "thrown": 4 * np.median(first.field("volume")[order][concrete])
             * np.median(first.field("density")) * np.count_nonzero(failed & concrete & (speed > THROWN)),
             "cut": (last.position[cut], last.field("damage")[cut])}
 
@@ -57,15 +62,16 @@ def measure_all(folders):
     """The table and the picture."""
     runs = sorted((column(folder) for folder in folders), key=lambda run: run["mass"])
     print("| run | TNT [kg] | thickness over root [cm/g^(1/3)] | slabs | failed length of front, back, side [m] "
-          f"| of whole sections [m] | whole on the axis [mm] | failed | faster than {THROWN:g} m/s [kg] |")
-    print("|" + "---|" * 9)
+          f"| of whole sections [m] | whole on the axis [mm] | back cover less bars [m/s] | failed | faster than {THROWN:g} m/s [kg] |")
+    print("|" + "---|" * 10)
     for run in runs:
         scaled = 100 * run["thickness"] / (1e3 * run["mass"]) ** (1 / 3)
         kind = "crater" if scaled > 3.6 else "crater and spall" if scaled > 2.0 else "hole"
         part = run["whole on the axis"]
         whole = "none" if part is None else f"{1e3 * part[0]:.0f} to {1e3 * part[1]:.0f}"
         print(f"| {run['folder'].name} | {run['mass']:g} | {scaled:.2f} | {kind} | {run['front']:.2f}, {run['back']:.2f}, "
-              f"{run['side']:.2f} | {run['through']:.2f} | {whole} | {100 * run['failed']:.0f} % | {run['thrown']:.0f} |")
+              f"{run['side']:.2f} | {run['through']:.2f} | {whole} | {run['parting']:.1f} "
+              f"| {100 * run['failed']:.0f} % | {run['thrown']:.0f} |")
     figure, panels = plt.subplots(1, len(runs), figsize=(2.1 * len(runs) + 0.8, 5.6), constrained_layout=True, squeeze=False,
                                   sharey=True)
     for panel, run in zip(panels[0], runs):
