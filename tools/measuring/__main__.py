@@ -4,6 +4,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "plotting"))
 
+import building  # noqa: E402
 import clamped_plate  # noqa: E402
 import contact_column  # noqa: E402
 import facade  # noqa: E402
@@ -19,9 +20,10 @@ from taylor_reference import measure_reference  # noqa: E402
 
 MEASURES = {"shock-helium": shock_helium.measure, "slab": slab.measure}
 # all runs side by side
-TOGETHER = {"clamped-plate": clamped_plate.measure_all, "contact-column": contact_column.measure_all, "facade": facade.measure_all,
-            "fragments": fragments.measure_all, "particle-blast": particle_blast.measure_all, "perforation": perforation.measure_all,
-            "shock-panel": shock_panel.measure_all, "surface-burst": surface_burst.measure_all, "taylor": taylor.measure_all}
+TOGETHER = {"building": building.measure_all, "clamped-plate": clamped_plate.measure_all, "contact-column": contact_column.measure_all,
+            "facade": facade.measure_all, "fragments": fragments.measure_all, "particle-blast": particle_blast.measure_all,
+            "perforation": perforation.measure_all, "shock-panel": shock_panel.measure_all, "surface-burst": surface_burst.measure_all,
+            "taylor": taylor.measure_all}
 
 if len(sys.argv) > 2 and sys.argv[1] == "taylor-reference":
     measure_reference(sys.argv[2:])
