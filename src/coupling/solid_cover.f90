@@ -177,9 +177,10 @@ contains
   pure logical function ends_in_corner(ghost, closed, cell, towards, along) result(corner)
     integer, intent(in) :: ghost(3), cell(3), towards(3), along(3)
     logical, intent(in) :: closed(1 - ghost(1):, 1 - ghost(2):, 1 - ghost(3):)
-    integer, parameter :: reach = 3, height = 3
-    integer :: side, q, h, at(3), length, ends
+    integer, parameter :: height = 3
+    integer :: side, q, h, at(3), length, ends, reach
     corner = .false.
+    reach = min(3, dot_product(ghost, along)) ! no farther than every brick sees
     length = 1
     ends = 0
     do side = -1, 1, 2
