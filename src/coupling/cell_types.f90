@@ -29,7 +29,7 @@ contains
       call mirror_ghosts(mesh, mesh%local(b), occupancy(b))
       call classify_brick(mesh%brick_cells, mesh%active, mesh%ghost, occupancy(b)%a(:, 1, :, :), kind(b)%a(:, 1, :, :))
     end do
-    call fill(mesh, halo, kind, 1, only_faces=.true.)
+    call fill(mesh, halo, kind, 1)
     do b = 1, mesh%n_local
       if (allocated(occupancy(b)%a)) call mirror_ghosts(mesh, mesh%local(b), kind(b))
     end do

@@ -205,7 +205,7 @@ contains
       if (.not. allocated(open%a)) then
         call allocate_cells(open, mesh%brick_cells, mesh%ghost, 1, 1.0_wp)
         call allocate_cells(wall_impulse, mesh%brick_cells, mesh%ghost, 3, 0.0_wp)
-        if (moving) call allocate_cells(wall, mesh%brick_cells, mesh%ghost, 6, 0.0_wp)
+        if (moving) call allocate_cells(wall, mesh%brick_cells, mesh%ghost, 12, 0.0_wp)
       end if
       open%a = merge(0.0_wp, 1.0_wp, kind%a > closed_from)
       wall_impulse%a = 0
@@ -239,7 +239,7 @@ contains
               coupling%partial(booked_covered, b) = coupling%partial(booked_covered, b) + 1
             else
               call mean_of_neighbours(mesh%active, mesh%ghost, flow%layout%n_rows, coupling%closed_from, i, j, k, &
-                                      before(:, 1, :, :), w, outward)
+                                      before(:, 1, :, :), now(:, 1, :, :), w, outward)
               cell = w(i, :flow%layout%n_rows, j, k)
               call close_cell(flow%layout, flow%eos, cell)
               if (coupling%moving_wall .and. solid_beside(solid, b, [i, j, k])) call follow_wall(flow%layout, flow%eos, &
@@ -287,30 +287,35 @@ contains
     end do
   end function solid_beside
 
-  !> Sets the state of a cell to the mean of those face neighbours that were open before. outward: sum of the directions from them
-  !> to the cell.
-  subroutine mean_of_neighbours(active, ghost, n_rows, closed_from, i, j, k, before, w, outward)
+  !> Sets the state of a cell to the mean of those face neighbours that were open before and still are, since what a wall of one
+  !> cell covers as it leaves this cell lies on its other side; where there is none, of those that were open before. outward: sum
+  !> of the directions from them to the cell.
+  subroutine mean_of_neighbours(active, ghost, n_rows, closed_from, i, j, k, before, now, w, outward)
     logical, intent(in) :: active(3)
     integer, intent(in) :: ghost(3), n_rows, i, j, k
     real(wp), intent(in) :: closed_from
-    real(wp), intent(in) :: before(1 - ghost(1):, 1 - ghost(2):, 1 - ghost(3):)
+    real(wp), intent(in), dimension(1 - ghost(1):, 1 - ghost(2):, 1 - ghost(3):) :: before, now
     real(wp), intent(inout) :: w(1 - ghost(1):, :, 1 - ghost(2):, 1 - ghost(3):)
     real(wp), intent(out) :: outward(3)
     real(wp) :: mean(n_rows)
-    integer :: d, side, n, c(3)
-    mean = 0
-    outward = 0
-    n = 0
-    do d = 1, 3
-      if (.not. active(d)) cycle
-      do side = -1, 1, 2
-        c = [i, j, k]
-        c(d) = c(d) + side
-        if (before(c(1), c(2), c(3)) > closed_from) cycle
-        mean = mean + w(c(1), :n_rows, c(2), c(3))
-        outward(d) = outward(d) - side
-        n = n + 1
+    integer :: d, side, n, pass, c(3)
+    do pass = 1, 2
+      mean = 0
+      outward = 0
+      n = 0
+      do d = 1, 3
+        if (.not. active(d)) cycle
+        do side = -1, 1, 2
+          c = [i, j, k]
+          c(d) = c(d) + side
+          if (before(c(1), c(2), c(3)) > closed_from) cycle
+          if (pass == 1 .and. now(c(1), c(2), c(3)) > closed_from) cycle
+          mean = mean + w(c(1), :n_rows, c(2), c(3))
+          outward(d) = outward(d) - side
+          n = n + 1
+        end do
       end do
+      if (n > 0) exit
     end do
     if (n > 0) w(i, :n_rows, j, k) = mean/n
   end subroutine mean_of_neighbours
@@ -399,12 +404,10 @@ contains
           flow%wall(b)%a(cell(1), 1:3, cell(2), cell(3)) = coupling%list(b)%velocity(:, c)
         end associate
       end do
+      call wall_normals(mesh%brick_cells, mesh%active, mesh%ghost, mesh%spacing, coupling%solid_part(b)%a(:, 1, :, :), &
+                        coupling%kind(b)%a(:, 1, :, :) > coupling%closed_from, flow%wall(b)%a)
     end do
-    call fill(mesh, halo, flow%wall, 3, only_faces=.true.)
-    do b = 1, mesh%n_local
-      if (allocated(flow%wall(b)%a)) call wall_normals(mesh%brick_cells, mesh%active, mesh%ghost, mesh%spacing, &
-        coupling%solid_part(b)%a(:, 1, :, :), coupling%kind(b)%a(:, 1, :, :) > coupling%closed_from, flow%wall(b)%a)
-    end do
+    call fill(mesh, halo, flow%wall, 12, only_faces=.true.)
   end subroutine set_walls
 
   !> Forces the state that the step starts from: the solid has moved since the last stage.

@@ -108,8 +108,9 @@ contains
 
   end subroutine smooth_part
 
-  !> Normals of the wall (variables 4 to 6) in open cells beside walls: along the gradient of the smoothed solid part;
-  !> along the axis where it is small; nil between two walls. All arrays with filled ghosts.
+  !> Normals of the wall in open cells beside walls, for their faces across x (variables 4 to 6), y (7 to 9) and z (10 to 12): along
+  !> the gradient of the smoothed solid part, less what another wall that meets this one in an inner corner adds to it; along the
+  !> axis where that is small; nil between two walls. solid_part, closed: with filled ghosts; normal: set in the cells of the brick.
   pure subroutine wall_normals(n, active, ghost, spacing, solid_part, closed, normal)
     integer, intent(in) :: n(3), ghost(3)
     logical, intent(in) :: active(3)
@@ -117,27 +118,24 @@ contains
     real(wp), intent(in), dimension(1 - ghost(1):, 1 - ghost(2):, 1 - ghost(3):) :: solid_part
     logical, intent(in), dimension(1 - ghost(1):, 1 - ghost(2):, 1 - ghost(3):) :: closed
     real(wp), intent(inout) :: normal(1 - ghost(1):, :, 1 - ghost(2):, 1 - ghost(3):)
-    integer :: i, j, k, d, r(3), lo(3), hi(3), step(3)
-    real(wp) :: gradient(3), axis(3), weight
+    integer :: i, j, k, d, t, side, r(3), step(3)
+    real(wp) :: gradient(3), turned(3), axis(3), weight
     integer :: a, b, c
-    logical :: beside
+    logical :: beside(-1:1, 3)
     r = merge(1, 0, active)
-    lo = 1 - r
-    hi = n + r
-    do k = lo(3), hi(3)
-      do j = lo(2), hi(2)
-        do i = lo(1), hi(1)
+    do k = 1, n(3)
+      do j = 1, n(2)
+        do i = 1, n(1)
           if (closed(i, j, k)) cycle
           beside = .false.
-          axis = 0
           do d = 1, 3
             if (.not. active(d)) cycle
             step = merge(1, 0, [1, 2, 3] == d)
-            if (closed(i + step(1), j + step(2), k + step(3))) axis(d) = axis(d) + 1
-            if (closed(i - step(1), j - step(2), k - step(3))) axis(d) = axis(d) - 1
-            beside = beside .or. closed(i + step(1), j + step(2), k + step(3)) .or. closed(i - step(1), j - step(2), k - step(3))
+            beside(1, d) = closed(i + step(1), j + step(2), k + step(3))
+            beside(-1, d) = closed(i - step(1), j - step(2), k - step(3))
           end do
-          if (.not. beside) cycle
+          if (.not. any(beside)) cycle
+          axis = merge(1, 0, beside(1, :)) - merge(1, 0, beside(-1, :))
           gradient = 0
           do c = -r(3), r(3)
             do b = -r(2), r(2)
@@ -149,10 +147,67 @@ contains
           end do
           gradient = gradient/spacing
           if (norm2(gradient)*minval(spacing, active) < 0.02_wp) gradient = axis
-          normal(i, 4:6, j, k) = gradient/max(norm2(gradient), tiny(1.0_wp))
+          do d = 1, 3
+            turned = gradient
+            do side = -1, 1, 2
+              if (.not. beside(side, d)) cycle
+              do t = 1, 3
+                if (active(t) .and. t /= d) then
+                  if (ends_in_corner(ghost, closed, [i, j, k], side*unit(d), unit(t))) turned(t) = 0
+                end if
+              end do
+            end do
+            normal(i, 1 + 3*d:3 + 3*d, j, k) = turned/max(norm2(turned), tiny(1.0_wp))
+          end do
         end do
       end do
     end do
   end subroutine wall_normals
+
+  !> Step by one cell along an axis.
+  pure function unit(d)
+    integer, intent(in) :: d
+    integer :: unit(3)
+    unit = merge(1, 0, [1, 2, 3] == d)
+  end function unit
+
+  !> True if the face of an open cell towards a wall belongs to a plane piece of wall along the mesh that ends, within reach of the
+  !> normals, at another wall that stands on it: an inner corner. A wall askew to the mesh has corners too, those of its steps, but
+  !> where such a step is higher than one cell it is but one cell deep. towards: step to the wall; along: step along it.
+  pure logical function ends_in_corner(ghost, closed, cell, towards, along) result(corner)
+    integer, intent(in) :: ghost(3), cell(3), towards(3), along(3)
+    logical, intent(in) :: closed(1 - ghost(1):, 1 - ghost(2):, 1 - ghost(3):)
+    integer, parameter :: reach = 3, height = 3
+    integer :: side, q, h, at(3), length, ends
+    corner = .false.
+    length = 1
+    ends = 0
+    do side = -1, 1, 2
+      do q = 1, reach
+        at = cell + q*side*along
+        if (is_closed(at)) then
+          do h = 1, height - 1
+            if (.not. is_closed(at - h*towards)) return
+          end do
+          corner = .true.
+          exit
+        end if
+        if (.not. is_closed(at + towards)) then
+          ends = ends + 1
+          exit
+        end if
+        length = length + 1
+      end do
+    end do
+    corner = corner .and. (ends == 0 .or. length > 2)
+
+  contains
+
+    pure logical function is_closed(at)
+      integer, intent(in) :: at(3)
+      is_closed = closed(at(1), at(2), at(3))
+    end function is_closed
+
+  end function ends_in_corner
 
 end module solid_cover

@@ -103,7 +103,8 @@ contains
   !> cells of a row.
   !> Optional, of bricks that have such cells: open: 1 where open, 0 where closed; impulse: the momentum that closed cells receive
   !> is added to the open cell beside them; troubled: 1 where all fluxes are to be of first order; arrival: time at which a
-  !> detonation front passes; wall: velocity and normal of walls that move, whose impulse is added to the closed cell.
+  !> detonation front passes; wall: velocity of walls that move and their normals for faces across x, y and z; their impulse is
+  !> added to the closed cell.
   subroutine advance_brick(n, g, ld, layout, eos, stage, eps2, steepest, positive, at_face, area, volume, from, start, new, &
     booked, s, &
     report, &
@@ -124,7 +125,7 @@ contains
     real(wp), intent(in), optional, dimension(1 - g(1):ld - g(1), 1, 1 - g(2):n(2) + g(2), 1 - g(3):n(3) + g(3)) :: open, &
       troubled, &
       arrival
-    real(wp), intent(in), optional :: wall(1 - g(1):ld - g(1), 6, 1 - g(2):n(2) + g(2), 1 - g(3):n(3) + g(3))
+    real(wp), intent(in), optional :: wall(1 - g(1):ld - g(1), 12, 1 - g(2):n(2) + g(2), 1 - g(3):n(3) + g(3))
     real(wp), intent(inout), optional :: impulse(1 - g(1):ld - g(1), 3, 1 - g(2):n(2) + g(2), 1 - g(3):n(3) + g(3))
     real(wp) :: rate(3), weight(3), over_h(3)
     integer :: j, k, cell_y, face_y, cell_z, face_z, c, x_cells, x_faces, stride(3), reach, back(3), last
@@ -338,7 +339,7 @@ contains
       integer :: q
       associate (i => closed(1), j => closed(2), k => closed(3))
         call wall_flux(layout, eos, direction, side, from(cell(1), :, cell(2), cell(3)), wall(i, 1:3, j, k), &
-          wall(cell(1), 4:6, cell(2), cell(3)), stage%slip, stage%lowest, flux, pressure)
+          wall(cell(1), 1 + 3*direction:3 + 3*direction, cell(2), cell(3)), stage%slip, stage%lowest, flux, pressure)
         impulse(i, direction, j, k) = impulse(i, direction, j, k) + side*weight(direction)*pressure
       end associate
       if (any(cell < 1) .or. any(cell > n)) return

@@ -55,7 +55,7 @@ module flow_state
     real(wp), allocatable :: ambient(:) !< rows of the state beyond ambient faces
     type(block), allocatable :: open(:) !< 1 flows, 0 closed; allocated only in bricks with closed cells; ghosts filled
     type(block), allocatable :: wall_impulse(:) !< momentum (3) given to closed cells, in the open cell beside them; with open
-    type(block), allocatable :: wall(:) !< of walls that move: velocity (3) in closed cells, normal (3) in open ones beside them
+    type(block), allocatable :: wall(:) !< of walls that move: velocity (3) in closed cells, in open ones beside them normals (3, 3)
     logical :: slip = .true. !< gas glides along walls that move
     !> 1 where a stage is redone with first-order fluxes; allocated while that goes on; sleeping bricks share the last one, all nil.
     type(block), allocatable :: troubled(:)

@@ -184,7 +184,7 @@ contains
     real(wp), intent(in) :: f(capacity, n_field)
     real(wp), intent(out) :: signal(chunk)
     real(wp), dimension(chunk) :: modulus, compression, strength, factor, energy
-    real(wp) :: failure_damage, shear
+    real(wp) :: failure_damage, rubble_damage, shear
     integer :: i
     do i = 1, n
       compression(i) = f(first + i - 1, at_mass)/(m%density*f(first + i - 1, at_volume)) - 1
@@ -212,29 +212,34 @@ contains
     end select
     failure_damage = m%failure_damage
     if (m%keeps_friction) failure_damage = huge(1.0_wp)
+    rubble_damage = huge(1.0_wp)
+    if (m%model == model_hjc .or. m%model == model_rht) rubble_damage = 1
     shear = m%shear_modulus
     if (m%model == model_drucker_prager) shear = sliding_modulus(m%drucker_prager, m%bulk_modulus, m%shear_modulus)
-    call add_speeds(n, m%density, shear, failure_damage, factor, modulus, f(first, at_mass), f(first, at_volume), &
+    call add_speeds(n, m%density, shear, failure_damage, rubble_damage, factor, modulus, f(first, at_mass), f(first, at_volume), &
       f(first, at_viscosity), f(first, at_damage), f(first, at_velocity), f(first, at_velocity + 1), f(first, &
         at_velocity + 2), signal)
   end subroutine signal_speeds
 
   !> c**2 = k ((dp/dmu)/r0 + 4/3 G/r) + 4 q/r, k the factor of the stiffness, without G in failed particles, whose density may be
-  !> small.
-  pure subroutine add_speeds(n, density, shear_modulus, failure_damage, factor, modulus, mass, volume, viscosity, damage, vx, vy, &
-      vz, signal)
+  !> small. Rubble, damaged to rubble_damage, resists by friction alone, and only when it is pressed together again: its G counts
+  !> with the density at rest where it has thinned out.
+  pure subroutine add_speeds(n, density, shear_modulus, failure_damage, rubble_damage, factor, modulus, mass, volume, viscosity, &
+      damage, vx, vy, vz, signal)
     integer, intent(in) :: n
-    real(wp), intent(in) :: density, shear_modulus, failure_damage
+    real(wp), intent(in) :: density, shear_modulus, failure_damage, rubble_damage
     real(wp), intent(in), dimension(n) :: factor, modulus, mass, volume, viscosity, damage, vx, vy, vz
     real(wp), intent(out) :: signal(n)
-    real(wp) :: stiff, four_thirds, inverse
+    real(wp) :: stiff, per_density, four_thirds, inverse
     integer :: i
     four_thirds = 4*third*shear_modulus
     inverse = 1/density
-    !$omp simd private(stiff)
+    !$omp simd private(stiff, per_density)
     do i = 1, n
-      stiff = factor(i)*merge(four_thirds, 0.0_wp, damage(i) < failure_damage) + 4*viscosity(i)
-      signal(i) = sqrt(factor(i)*modulus(i)*inverse + stiff*volume(i)/mass(i)) + sqrt(vx(i)*vx(i) + vy(i)*vy(i) + vz(i)*vz(i))
+      per_density = volume(i)/mass(i)
+      stiff = factor(i)*merge(four_thirds, 0.0_wp, damage(i) < failure_damage)
+      stiff = stiff*merge(per_density, min(per_density, inverse), damage(i) < rubble_damage) + 4*viscosity(i)*per_density
+      signal(i) = sqrt(factor(i)*modulus(i)*inverse + stiff) + sqrt(vx(i)*vx(i) + vy(i)*vy(i) + vz(i)*vz(i))
     end do
   end subroutine add_speeds
 

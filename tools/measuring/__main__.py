@@ -4,6 +4,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "plotting"))
 
+import building  # noqa: E402
 import flat_box  # noqa: E402
 import fragments  # noqa: E402
 import particle_blast  # noqa: E402
@@ -16,14 +17,16 @@ import taylor  # noqa: E402
 from taylor_reference import measure_reference  # noqa: E402
 
 MEASURES = {"shock-helium": shock_helium.measure, "slab": slab.measure}
-TOGETHER = {"flat-box": flat_box.measure_all, "fragments": fragments.measure_all, "particle-blast": particle_blast.measure_all,
-            "perforation": perforation.measure_all, "shock-panel": shock_panel.measure_all, "surface-burst": surface_burst.measure_all, "taylor": taylor.measure_all}  # all runs side by side
+TOGETHER = {"building": building.measure_all, "flat-box": flat_box.measure_all, "fragments": fragments.measure_all,
+            "particle-blast": particle_blast.measure_all, "perforation": perforation.measure_all,
+            "shock-panel": shock_panel.measure_all, "surface-burst": surface_burst.measure_all, "taylor": taylor.measure_all}  # all runs side by side
 
 if len(sys.argv) > 2 and sys.argv[1] == "taylor-reference":
     measure_reference(sys.argv[2:])
     sys.exit()
 if len(sys.argv) < 3 or sys.argv[1] not in {**MEASURES, **TOGETHER}:
-    sys.exit("usage: tools/measure flat-box|fragments|particle-blast|perforation|shock-helium|shock-panel|slab|surface-burst|taylor RUN_FOLDER...\n"
+    sys.exit("usage: tools/measure building|flat-box|fragments|particle-blast|perforation|shock-helium|shock-panel|slab|surface-burst|taylor "
+             "RUN_FOLDER...\n"
              "       tools/measure taylor-reference VELOCITY [ELEMENTS [jc_a=157e6 ...]]")
 folders = [pathlib.Path(folder) for folder in sys.argv[2:]]
 if sys.argv[1] in TOGETHER:

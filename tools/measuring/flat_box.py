@@ -7,15 +7,13 @@ A path is a straight line from an image of the charge in the walls. A peak belon
 SPEEDS: shocks are faster than sound, 340 m/s, and in the products of the explosive much faster."""
 import csv
 import itertools
-import pathlib
 import re
 
 import numpy as np
 
 from snapshot_files import open_snapshot
-from flow_pictures import draw_slice
 from solid_pictures import draw_section, draw_view
-from style import LINES, colour_bar, plt, save, time_text
+from style import COLOURS, LINES, LogNorm, Normalize, colour_bar, plt, save, time_text
 
 HALF, HEIGHT, WALL = 1.35, 0.8, 0.1  # m: half the width of a room, clear height, thickness of walls and roof
 ROOMS = {"blast room": (0, 0), "side room": (1, 0), "other side room": (0, 1), "diagonal room": (1, 1)}
@@ -160,9 +158,11 @@ def print_solid(folder, times, columns):
     place = start.position[order][np.searchsorted(start.field("id")[order], last.field("id"))]
     damage, concrete = last.field("damage"), last.field("material") == last.materials.index("concrete") + 1
     roof = place[:, 2] > HEIGHT
-    for name, (i, j) in ROOMS.items():
-        low, high = (np.array([i, j]) * (2 * HALF + WALL) - WALL, np.array([i, j]) * (2 * HALF + WALL) + 2 * HALF + WALL)
-        here = concrete & np.all((place[:, :2] > low) & (place[:, :2] < high), axis=1)
+    of_blast_room = np.all(place[:, :2] < 2 * HALF + WALL, axis=1)  # with its walls
+    for name, room in ROOMS.items():
+        low = np.array(room) * (2 * HALF + WALL) - WALL
+        here = concrete & np.all((place[:, :2] > low) & (place[:, :2] < low + 2 * HALF + 2 * WALL), axis=1)
+        here &= of_blast_room if name == "blast room" else ~of_blast_room
         print(f"  {name}, failed concrete at {1e3 * last.time:.2f} ms: roof {100 * np.mean(damage[here & roof] >= 1):.2f} %, "
               f"walls {100 * np.mean(damage[here & ~roof] >= 1):.2f} %")
     print(f"  roof of the blast room broken through over {broken_area(place, damage >= 1, concrete & roof):.3f} m2")
@@ -197,22 +197,29 @@ def picture_histories(folders):
     print("picture:", save(figure, folders[0] / "pictures" / "histories.png"))
 
 
-def picture_pressure(folder):
-    """Pressure in the middle of the height at the times of the snapshots; white: edge of the products."""
+def picture_flow(folder):
+    """Pressure and speed in the middle of the height at the times of the snapshots; white: edge of the products."""
     flows = [open_snapshot(path) for path in sorted(folder.glob("snapshot_flow_*.vtkhdf"))]
-    flows = [flow for flow in flows if flow.time > 0.2e-3][:9]
-    if not flows:
+    flows = [flow for flow in flows if flow.time > 0.5e-3][:6]
+    if len(flows) < 2:
         return
-    figure, axes = plt.subplots(3, 3, figsize=(9, 9), squeeze=False, constrained_layout=True)
-    for panel, flow in zip(axes.flat, flows):
-        beside = str(flow.path).replace("snapshot_flow_", "snapshot_solid_")
-        solid = open_snapshot(beside) if pathlib.Path(beside).exists() else None
-        mappable, title, _ = draw_slice(panel, flow, "pressure", 2, HEIGHT / 2, wanted=(0.05, 0.5), solid=solid)
-        colour_bar(figure, mappable, panel, title)
-        panel.set_title(time_text(flow.time, flow.time_unit), loc="left")
-    for panel in axes.flat[len(flows):]:
-        panel.set_axis_off()
-    print("picture:", save(figure, folder / "pictures" / "pressure.png"))
+    for name, factor, unit, norm in (("pressure", 1e-3, "kPa", LogNorm(70, 500)), ("speed", 1, "m/s", Normalize(0, 250))):
+        figure, axes = plt.subplots(2, 3, figsize=(9.5, 6.2), constrained_layout=True, sharex=True, sharey=True)
+        for panel, flow in zip(axes.flat, flows):
+            values, _ = flow.layer(name, 2, HEIGHT / 2)
+            solid = flow.layer("cell_type", 2, HEIGHT / 2)[0] > 0.5
+            products, _ = flow.layer("volume_fraction_tnt", 2, HEIGHT / 2)
+            box = (flow.lower[0], flow.upper[0], flow.lower[1], flow.upper[1])
+            image = panel.imshow(np.ma.masked_where(solid, np.maximum(factor * values, norm.vmin)), extent=box, norm=norm, cmap=COLOURS[name])
+            panel.set_facecolor("#8a8a8a")
+            panel.contour(np.where(solid, 0, products), levels=[0.5], extent=box, colors="white", linewidths=0.7)
+            panel.set_title(time_text(flow.time, flow.time_unit), loc="left")
+        for panel in axes.flat[len(flows):]:
+            panel.set_axis_off()
+        figure.colorbar(image, ax=axes, shrink=0.7, label=f"{name} [{unit}]")
+        figure.supxlabel("x [m]")
+        figure.supylabel("y [m]")
+        print("picture:", save(figure, folder / "pictures" / f"{name}.png"))
 
 
 def picture_damage(folder):
@@ -221,7 +228,7 @@ def picture_damage(folder):
     if not files or "concrete" not in open_snapshot(files[-1]).materials:
         return
     solid = open_snapshot(files[-1])
-    figure, axes = plt.subplots(2, 2, figsize=(9, 8), constrained_layout=True, height_ratios=(3, 1))
+    figure, axes = plt.subplots(2, 2, figsize=(9, 6.2), constrained_layout=True, height_ratios=(4, 1))
     for panel, direction, title in ((axes[0, 0], (0, 0, 1), "from above"), (axes[0, 1], (0, 0, -1), "from below")):
         mappable, label = draw_view(panel, solid, "damage", np.array(direction, dtype=float), wanted=(0, 1))
         panel.set_title(f"{title}, {time_text(solid.time, solid.time_unit)}", loc="left")
@@ -242,6 +249,6 @@ def measure_all(folders):
         print_rooms(times, columns)
         print_means(folder)
         print_solid(folder, times, columns)
-        picture_pressure(folder)
+        picture_flow(folder)
         picture_damage(folder)
     picture_histories(folders)
