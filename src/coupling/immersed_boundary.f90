@@ -238,8 +238,8 @@ contains
               call book_gas(i, j, k, -1.0_wp)
               coupling%partial(booked_covered, b) = coupling%partial(booked_covered, b) + 1
             else
-              call mean_of_neighbours(mesh%active, mesh%ghost, flow%layout%n_rows, coupling%closed_from, i, j, k, &
-                                      before(:, 1, :, :), now(:, 1, :, :), w, outward)
+              call mean_of_neighbours(mesh%active, mesh%ghost, flow%layout%n_rows, coupling%closed_from, coupling%moving_wall, &
+                                      i, j, k, before(:, 1, :, :), now(:, 1, :, :), w, outward)
               cell = w(i, :flow%layout%n_rows, j, k)
               call close_cell(flow%layout, flow%eos, cell)
               if (coupling%moving_wall .and. solid_beside(solid, b, [i, j, k])) call follow_wall(flow%layout, flow%eos, &
@@ -287,35 +287,36 @@ contains
     end do
   end function solid_beside
 
-  !> Sets the state of a cell to the mean of those face neighbours that were open before and still are, since what a wall of one
-  !> cell covers as it leaves this cell lies on its other side; where there is none, of those that were open before. outward: sum
-  !> of the directions from them to the cell.
-  subroutine mean_of_neighbours(active, ghost, n_rows, closed_from, i, j, k, before, now, w, outward)
-    logical, intent(in) :: active(3)
+  !> Sets the state of a cell to the mean of those face neighbours that were open before. one_sided: leave out one that is closed
+  !> now where that opposite was and is open, since what a wall of one cell covers as it leaves this cell lies on its other side.
+  !> outward: sum of the directions from them to the cell.
+  subroutine mean_of_neighbours(active, ghost, n_rows, closed_from, one_sided, i, j, k, before, now, w, outward)
+    logical, intent(in) :: active(3), one_sided
     integer, intent(in) :: ghost(3), n_rows, i, j, k
     real(wp), intent(in) :: closed_from
     real(wp), intent(in), dimension(1 - ghost(1):, 1 - ghost(2):, 1 - ghost(3):) :: before, now
     real(wp), intent(inout) :: w(1 - ghost(1):, :, 1 - ghost(2):, 1 - ghost(3):)
     real(wp), intent(out) :: outward(3)
     real(wp) :: mean(n_rows)
-    integer :: d, side, n, pass, c(3)
-    do pass = 1, 2
-      mean = 0
-      outward = 0
-      n = 0
-      do d = 1, 3
-        if (.not. active(d)) cycle
-        do side = -1, 1, 2
-          c = [i, j, k]
-          c(d) = c(d) + side
-          if (before(c(1), c(2), c(3)) > closed_from) cycle
-          if (pass == 1 .and. now(c(1), c(2), c(3)) > closed_from) cycle
-          mean = mean + w(c(1), :n_rows, c(2), c(3))
-          outward(d) = outward(d) - side
-          n = n + 1
-        end do
+    integer :: d, side, n, c(3)
+    mean = 0
+    outward = 0
+    n = 0
+    do d = 1, 3
+      if (.not. active(d)) cycle
+      do side = -1, 1, 2
+        c = [i, j, k]
+        c(d) = c(d) + side
+        if (before(c(1), c(2), c(3)) > closed_from) cycle
+        if (one_sided .and. now(c(1), c(2), c(3)) > closed_from) then
+          c(d) = c(d) - 2*side
+          if (max(before(c(1), c(2), c(3)), now(c(1), c(2), c(3))) < closed_from) cycle
+          c(d) = c(d) + 2*side
+        end if
+        mean = mean + w(c(1), :n_rows, c(2), c(3))
+        outward(d) = outward(d) - side
+        n = n + 1
       end do
-      if (n > 0) exit
     end do
     if (n > 0) w(i, :n_rows, j, k) = mean/n
   end subroutine mean_of_neighbours

@@ -201,11 +201,7 @@ contains
       solid%n_bodies = solid%n_bodies + 1
       solid%body_name(solid%n_bodies) = deck%body(i)%name
     end do
-<<<<<<< HEAD
-    solid%body_name = solid%body_name(:solid%n_bodies)
-=======
     solid%body_name = solid%body_name(:solid%n_bodies) ! several shapes may be one body
->>>>>>> main
   end subroutine number_bodies
 
   !> The rigid bodies in the order of the deck and what each is free to do; in directions without cells there is no motion.

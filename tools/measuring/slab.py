@@ -5,10 +5,24 @@ import csv
 
 import numpy as np
 
-from snapshot_files import open_snapshot
+from snapshot_files import Solid, open_snapshot
 
 OPENINGS = (0.004, 0.008, 0.016)  # m
 QUARTERS = 4  # of the slab that the model leaves out, itself included
+
+
+class SlabAlone(Solid):
+    """The particles of the first body of a snapshot, the slab: explosive and air may be particles too."""
+
+    def __init__(self, snapshot):
+        super().__init__(snapshot.path, snapshot.file)
+        self.chosen = snapshot.field("body") == 1
+        self.position = self.position[self.chosen]
+        self.n = len(self.position)
+
+    def field(self, name):
+        values = super().field(name)
+        return values[self.chosen]
 
 
 def deflection(folder):
@@ -34,6 +48,7 @@ def measure(folder):
     first, last = open_snapshot(files[0]), open_snapshot(files[-1])
     print(f"{folder}: {float(np.ravel(last.time)[0]) * 1e3:.3f} ms")
     deflection(folder)
+    first, last = SlabAlone(first), SlabAlone(last)
     order = np.argsort(first.field("id"))
     start = first.position[order]
     ids = first.field("id")[order]
