@@ -165,16 +165,26 @@ def print_solid(folder, times, columns):
         here &= of_blast_room if name == "blast room" else ~of_blast_room
         print(f"  {name}, failed concrete at {1e3 * last.time:.2f} ms: roof {100 * np.mean(damage[here & roof] >= 1):.2f} %, "
               f"walls {100 * np.mean(damage[here & ~roof] >= 1):.2f} %")
-    print(f"  roof of the blast room broken through over {broken_area(place, damage >= 1, concrete & roof):.3f} m2")
+    centre = np.hypot(place[:, 0] - HALF, place[:, 1] - HALF) < HALF / 2
+    for name, part in (("over a disc of half its width in the middle", centre), ("elsewhere", of_blast_room & ~centre)):
+        whole, cracked = broken_share(place, damage >= 1, concrete & roof & part)
+        print(f"  roof of the blast room, {name}: failed through its thickness {100 * whole:.1f} %, in some depth {100 * cracked:.1f} %")
+    joint = concrete & (np.abs(place[:, 0]) < WALL) & (place[:, 2] > HEIGHT - WALL) & (place[:, 1] > 0) & (place[:, 1] < 2 * HALF)
+    along = np.floor(place[joint, 1] / WALL).astype(int)
+    share = np.bincount(along, weights=damage[joint] >= 1) > 0
+    print(f"  inner corner of roof and outer wall: failed somewhere across over {100 * share.mean():.0f} % of its length, "
+          f"{100 * np.mean(damage[joint] >= 1):.0f} % of the concrete there")
 
 
-def broken_area(place, failed, roof):
-    """Area of the roof whose particles have all failed, column by column [m2]."""
-    pitch = np.diff(np.unique(np.round(place[roof, 2], 6))).max()
+def broken_share(place, failed, roof):
+    """Part of the columns of particles of a piece of the roof that have all failed, and part of those in which some have."""
+    layers = np.unique(np.round(place[roof, 2], 6))
+    pitch = np.diff(layers).max()
     column = np.floor(place[roof, :2] / pitch + 1e-6).astype(int)
     _, number_of = np.unique(column, axis=0, return_inverse=True)
     sound = np.bincount(number_of.ravel(), weights=~failed[roof])
-    return float(np.sum(sound == 0)) * pitch ** 2
+    broken = np.bincount(number_of.ravel(), weights=failed[roof])
+    return np.mean(sound == 0), np.mean(broken > 0)
 
 
 def picture_histories(folders):
@@ -210,7 +220,8 @@ def picture_flow(folder):
             solid = flow.layer("cell_type", 2, HEIGHT / 2)[0] > 0.5
             products, _ = flow.layer("volume_fraction_tnt", 2, HEIGHT / 2)
             box = (flow.lower[0], flow.upper[0], flow.lower[1], flow.upper[1])
-            image = panel.imshow(np.ma.masked_where(solid, np.maximum(factor * values, norm.vmin)), extent=box, norm=norm, cmap=COLOURS[name])
+            shown = np.ma.masked_where(solid, np.maximum(factor * values, norm.vmin))
+            image = panel.imshow(shown, extent=box, norm=norm, cmap=COLOURS[name])
             panel.set_facecolor("#8a8a8a")
             panel.contour(np.where(solid, 0, products), levels=[0.5], extent=box, colors="white", linewidths=0.7)
             panel.set_title(time_text(flow.time, flow.time_unit), loc="left")
