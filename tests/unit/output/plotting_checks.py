@@ -33,7 +33,7 @@ def check_flow():
     plane, _ = bubble.layer("density", None, 0.0)
     assert plane.shape == (bubble.cells[1], bubble.cells[0])
     x = bubble.lower[0] + (np.arange(bubble.cells[0]) + 0.5) * bubble.spacing[0]
-    middle = plane[bubble.cells[1] // 2]
+    middle = plane[0]  # beside the plane of symmetry
     assert close(middle[np.argmin(abs(x - 175))], 0.138, 1e-4), "the bubble lies where the deck puts it"
     assert close(middle[np.argmin(abs(x - 300))], 1.3764, 1e-4), "the shocked air lies to the right"
     share = sum(bubble.layer(name, None, 0.0)[0] for name in bubble.data if name.startswith("volume_fraction"))

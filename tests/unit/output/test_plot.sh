@@ -35,7 +35,7 @@ says() { # says TEXT COMMAND...: the command's output has the text
 }
 
 check 'sod runs' run sod one
-check 'shock and bubble runs' run shock_helium_coarse two --steps 20 --set mesh%cells=65,18,1
+check 'shock and bubble runs' run shock_helium_coarse two --steps 20 --set mesh%cells=65,9,1
 check 'taylor bar runs' run taylor_bar bar --steps 40 --set body%spacing=0.5
 check 'slab runs' run rc_slab_coarse three --steps 12
 check 'material tests run' run material_tests points
