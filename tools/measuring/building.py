@@ -1,10 +1,9 @@
 """Centre column of the building: deflection of its middle, load on its front, damage along it, lift of the plate. Figures of each run
 and one picture. Deflection: displacement of the middle less the mean of foot and head, along the blast; residual: mean over the last
 third of the run. Test: 12.5 and 6.3 mm, as generally reported."""
-import csv
-
 import numpy as np
 
+from run_tables import read_columns
 from snapshot_files import open_snapshot
 from style import LINES, plt, save
 
@@ -12,14 +11,6 @@ PEAK, RESIDUAL = 12.5, 6.3  # mm
 FRONT = 0.0445 * 0.9345  # m2, of the half that is computed
 WIDTH = 0.089  # m
 PLATES = ("plate at the front", "plate behind the column", "plate inside")
-
-
-def table(path):
-    """Columns of a CSV by their heads without the unit."""
-    with open(path, newline="") as file:
-        rows = list(csv.reader(file))
-    data = np.array([[float(value) for value in row] for row in rows[1:]])
-    return {head.split(" [")[0]: data[:, i] for i, head in enumerate(rows[0])}
 
 
 def deflection(gauges):
@@ -47,7 +38,7 @@ def failed_parts(folder):
 
 def measure(folder, panel, colour):
     """Prints the figures of one run and draws its curve."""
-    gauges = table(folder / "gauges.csv")
+    gauges = read_columns(folder / "gauges.csv")
     time, bent, moved = deflection(gauges)
     k = int(np.nanargmax(bent))
     late = time > time[-1] * 2 / 3
@@ -66,7 +57,7 @@ def measure(folder, panel, colour):
               f"impulse {np.nanmax(impulse):.0f} Pa s")
     loads = folder / "loads.csv"
     if loads.exists():
-        impulse = table(loads)["column.impulse_x"] / FRONT
+        impulse = read_columns(loads)["column.impulse_x"] / FRONT
         print(f"  impulse on the column over its front: {np.max(impulse):.0f} Pa s, at the end {impulse[-1]:.0f} Pa s")
     for name in PLATES:
         if f"{name}.displacement_z" not in gauges:

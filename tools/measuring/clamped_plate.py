@@ -6,24 +6,16 @@ area. Nine of ten tests are within one thickness. The tests had impulses that we
 had moved. For others there is an estimate: the plate as an oscillator with its mass and a stiffness by which an even impulse gives
 the first fit, under the load over time, of which what is far from the centre counts less, by a cosine in x and y. A quarter of the
 plate is in the run, the plate is across z."""
-import csv
 import pathlib
 import re
 
 import h5py
 import numpy as np
 
+from run_tables import read_columns
 from style import LINES, plt, save
 
 PICTURE = pathlib.Path("docs/pictures/clamped_plate.png")
-
-
-def columns(path):
-    """Columns of a table by their heading."""
-    with open(path, newline="") as file:
-        rows = list(csv.reader(file))
-    data = np.array([[float(v) for v in row] for row in rows[1:]])
-    return {head: data[:, i] for i, head in enumerate(rows[0])}
 
 
 def number(text, key, group, which=0):
@@ -52,24 +44,24 @@ def plate(folder):
     width, thickness = 2 * (high[0] - low[0]), high[2] - low[2]
     steel = [body for body in re.findall(r"^&material\b.*?^/", deck, re.DOTALL | re.MULTILINE) if "jc_a" in body][0]
     density, yield_stress = (float(re.search(rf"\b{key} = ([-0-9.eE+]*)", steel).group(1)) for key in ("density", "jc_a"))
-    gauge = columns(folder / "gauges.csv")
-    time, way = gauge["time [s]"], gauge["centre.displacement_z [m]"]
+    gauge = read_columns(folder / "gauges.csv")
+    time, way = gauge["time"], gauge["centre.displacement_z"]
     top = int(np.argmax(way))
     loads = folder / "loads.csv"
     if loads.exists():
-        load = columns(loads)
-        share = load["plate.impulse_z [N s]"]
-        impulse = 4 * np.interp(time[top], load["time [s]"], share)
+        load = read_columns(loads)
+        share = load["plate.impulse_z"]
+        impulse = 4 * np.interp(time[top], load["time"], share)
         mode = share_of_mode(folder, time[top], width / 2)
-        half = load["time [s]"][np.argmax(share > 0.1 * share.max())], load["time [s]"][np.argmax(share > 0.9 * share.max())]
+        half = load["time"][np.argmax(share > 0.1 * share.max())], load["time"][np.argmax(share > 0.9 * share.max())]
     else:
         impulse, half = density * width ** 2 * thickness * number(deck, "velocity", "body")[2], (0.0, 0.0)
         mode = 1.0
-        load, share = {"time [s]": np.array([0.0, 1e-9])}, np.array([0.0, impulse / 4])
+        load, share = {"time": np.array([0.0, 1e-9])}, np.array([0.0, impulse / 4])
     rigid = impulse / (thickness ** 2 * np.sqrt(density * yield_stress))
     mass = density * width ** 2 * thickness
     frequency = impulse / mass / (0.471 * rigid / (2 * width) * thickness)
-    steps, at_step = np.diff(4 * share), 0.5 * (load["time [s]"][1:] + load["time [s]"][:-1])
+    steps, at_step = np.diff(4 * share), 0.5 * (load["time"][1:] + load["time"][:-1])
     answers = [np.sum(steps * np.sin(frequency * (t - at_step)) * (t > at_step)) for t in time[::5]]
     oscillator = mode * max(answers) / (mass * frequency)
     rest = way[time > time[top] + 0.25 * (time[-1] - time[top])].mean()

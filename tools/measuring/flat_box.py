@@ -5,12 +5,12 @@ of the height and the damage.
 
 A path is a straight line from an image of the charge in the walls. A peak belongs to a path if the mean speed along it is between
 SPEEDS: shocks are faster than sound, 340 m/s, and in the products of the explosive much faster."""
-import csv
 import itertools
 import re
 
 import numpy as np
 
+from run_tables import read_columns
 from snapshot_files import open_snapshot
 from solid_pictures import draw_section, draw_view
 from style import COLOURS, LINES, LogNorm, Normalize, colour_bar, plt, save, time_text
@@ -30,14 +30,6 @@ AMBIENT = 101325.0  # Pa
 GAMMA = 1.4  # of the air
 FELT = 5e3  # Pa: overpressure that counts as an arrival
 STEP = 1e-5  # s, of the histories looked at
-
-
-def histories(folder):
-    """Times and a dictionary of the columns of gauges.csv, without units."""
-    with open(folder / "gauges.csv", newline="") as file:
-        rows = list(csv.reader(file))
-    data = np.array([[float(v) for v in row] for row in rows[1:] if len(row) == len(rows[0])])
-    return data[:, 0], {head.split(" [")[0]: data[:, column] for column, head in enumerate(rows[0])}
 
 
 def number(deck, group, key):
@@ -193,7 +185,8 @@ def picture_histories(folders):
     figure, axes = plt.subplots(2, 2, figsize=(9, 5.4), sharex=True, constrained_layout=True)
     for panel, gauge in zip(axes.flat, panels):
         for colour, folder in zip(itertools.cycle(LINES), folders):
-            times, columns = histories(folder)
+            columns = read_columns(folder / "gauges.csv")
+            times = columns["time"]
             if gauge + ".overpressure" in columns:
                 curve = columns[gauge + ".overpressure"] / 1e3
                 panel.plot(1e3 * times, curve, color=colour, lw=1, label=folder.name.replace("_", " "))
@@ -254,7 +247,8 @@ def measure_all(folders):
     """Figures of each run, and the histories of all."""
     for folder in folders:
         (folder / "pictures").mkdir(exist_ok=True)
-        times, columns = histories(folder)
+        columns = read_columns(folder / "gauges.csv")
+        times = columns["time"]
         print(f"{folder}: until {1e3 * times[-1]:.2f} ms")
         print_side_wall(times, columns)
         print_rooms(times, columns)
