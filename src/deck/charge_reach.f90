@@ -17,7 +17,7 @@ module charge_reach
   real(wp), parameter :: on_plane = 1e-9_wp !< of a cell: distance of a centre that lies on a symmetry plane
   real(wp), parameter :: at_center = 1e-6_wp !< of its radius: distance of a detonator that lies in the centre of a charge
   !> Along a radius alone, and on an axisymmetric mesh:
-  integer, parameter :: fewest_cells(2) = [100, 20] !< in the radius of a charge
+  integer, parameter :: fewest_cells(2) = [100, 24], most_cells(2) = [huge(1), 48] !< in a charge's radius, by default
   real(wp), parameter :: finer(2) = [4.0_wp, 2.0_wp] !< cells of the fine mesh in one of the scene
 
 contains
@@ -223,7 +223,8 @@ contains
       kind = 2
       length = minval(charge_extents(deck, c))
     end if
-    n = max(fewest_cells(kind), ceiling(finer(kind)*length/minval(deck%mesh%cell_size(), deck%mesh%active())))
+    n = ceiling(finer(kind)*length/minval(deck%mesh%cell_size(), deck%mesh%active()))
+    n = min(max(n, fewest_cells(kind)), most_cells(kind))
   end function cells_in_charge
 
   !> True if a face is a symmetry plane through the centre of charge c, or the axis or centre that it lies on.

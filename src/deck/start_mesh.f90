@@ -1,6 +1,7 @@
 !> The axisymmetric mesh on which the blast of a charge with `start = 'axisymmetric'` is computed. Its cells become twice as large
-!> each time that the wave has come through it, until they are half as large as those of the scene: so there are always some hundred
-!> of them before the front. Across the axis it may end at the faces of the scene; cells of all sizes divide the way between those.
+!> each time that the wave has come through it, until they are half as large as those of the scene: so there are always more than a
+!> hundred of them before the front. Across the axis it may end at the faces of the scene; cells of all sizes divide the way between
+!> those.
 module start_mesh
   use charge_reach, only: charge_extents, cells_in_charge, start_axis
   use deck_types, only: deck_type, word_length
@@ -10,7 +11,7 @@ module start_mesh
   public :: mesh_of_start, lay_start_mesh
 
   integer, parameter :: brick(2) = [32, 16] !< cells along the radius and the axis
-  integer, parameter :: least_cells = 192 !< along the radius
+  integer, parameter :: mesh_to_charge = 10 !< cells along the radius of a mesh over those in the charge
   real(wp), parameter :: room_to_burn = 2.5_wp !< longest extents of the charge that the first mesh reaches over
   real(wp), parameter :: coarsest = 0.5_wp !< of a cell of the scene
 
@@ -40,7 +41,7 @@ contains
     do while (2*mesh%coarsest_thickness() <= coarsest*minval(deck%mesh%cell_size(), deck%mesh%active()))
       mesh%doublings = mesh%doublings + 1
     end do
-    mesh%first_cells = whole_bricks(max(real(least_cells, wp), room_to_burn*maxval(extents)/mesh%thickness), 1)
+    mesh%first_cells = whole_bricks(max(mesh_to_charge*minval(extents), room_to_burn*maxval(extents))/mesh%thickness, 1)
     mesh%end_place = [deck%mesh%lower(axis), deck%mesh%upper(axis)] - deck%charge(c)%center(axis)
     mesh%end_kind = [(deck%boundary%flow_face(axis, side), side=1, 2)]
     unit = brick(2)*2**mesh%doublings
