@@ -52,6 +52,7 @@ contains
     integer, intent(in) :: c, cells
     type(deck_type) :: alone
     alone = deck_of_charge(deck, c)
+    if (allocated(alone%detonator)) alone%detonator%position(1) = 0
     alone%mesh%geometry = deck%charge(c)%start
     alone%mesh%cells(1) = cells
     alone%mesh%upper(1) = cells*(charge_radius(deck, c)/cells_in_charge(deck, c))
@@ -86,7 +87,6 @@ contains
     if (allocated(deck%detonator)) then
       alone%detonator = pack(deck%detonator, deck%detonator%charge == 0 .or. deck%detonator%charge == c)
       alone%detonator%charge = 0
-      alone%detonator%position(1) = 0
     end if
     alone%body = deck%body(:0)
     alone%gauge = deck%gauge(:0)
