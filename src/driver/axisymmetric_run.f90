@@ -1,7 +1,8 @@
 !> The blast of one charge on fine axisymmetric meshes of its own, one after the other as the wave grows: each takes over the state
 !> of the one before as a scene takes over a blast. A sphere that burns from its centre begins along its radius alone.
 module axisymmetric_run
-  use blast_run, only: blast_run_type, keep_gauges, keep_history, note_overpressure, note_step, profile_of, run_until, start_run
+  use blast_run, only: blast_run_type, keep_gauges, keep_history, note_energy, note_overpressure, note_step, profile_of, &
+    run_until, start_run
   use charge_reach, only: burns_from_center, charge_radius, least_reach, reach_of_charge, start_axis
   use deck_types, only: deck_type, gauge_group
   use kinds, only: wp
@@ -160,6 +161,8 @@ contains
       call map_profile(mesh, flow, blast)
       run%scene%clock%time = blast%profile%time
       flow%time = blast%profile%time
+      run%energy_error = blast%profile%energy_error
+      call note_energy(run)
       call note_overpressure(run, 0.0_wp)
       do b = 1, mesh%n_local
         do j = 1, mesh%brick_cells(2)

@@ -2,10 +2,10 @@
 !> enough, and what it leaves. Its mesh is that of radii, x, whose centre or axis is at 0, and of places along the axis, y, from the
 !> centre on.
 module blast_run
+  use balance, only: balance_type, take_balance
   use blocks, only: block, holder, own
-  use deck_types, only: deck_type
+  use deck_types, only: deck_type, find_material
   use errors, only: fatal, exit_bad_input
-  use flow_totals, only: flow_totals_type, sum_flow
   use kinds, only: wp
   use main_loop, only: advance_scene
   use mesh, only: mesh_type
@@ -20,7 +20,7 @@ module blast_run
   use text, only: str
   implicit none
   private
-  public :: start_run, run_until, keep_gauges, note_step, note_overpressure, keep_history, profile_of, table_of
+  public :: start_run, run_until, keep_gauges, note_step, note_overpressure, note_energy, keep_history, profile_of, table_of
 
   real(wp), parameter :: noticeable = 1e-6_wp !< part of pressure and sound speed that counts as the front of the wave
   real(wp), parameter :: slightest = 1e-9_wp !< what is above the noise of relaxation in still surroundings
@@ -37,6 +37,8 @@ module blast_run
     real(wp), allocatable :: seen_at(:)
     integer :: n_seen_at = 0
     real(wp) :: afterburnt = 0 !< before the mesh grew last
+    real(wp) :: energy_error = 0 !< as of a profile, before the mesh grew last
+    real(wp) :: energy = 0 !< of the whole then
     real(wp) :: front = 0 !< distance from the centre that the wave has come to
     real(wp) :: disturbed = 0 !< distance beyond which all is still but for noise
   contains
@@ -65,7 +67,16 @@ contains
     call note_overpressure(run, 0.0_wp)
     call update_peaks(run%peaks, run%scene%mesh, run%scene%flow%w(:, run%scene%flow%current), run%scene%flow%open, &
                       run%scene%flow%layout%pressure(), 0.0_wp, 0.0_wp)
+    call note_energy(run)
   end subroutine start_run
+
+  !> Notes the energy that a run begins with on its mesh.
+  subroutine note_energy(run)
+    type(blast_run_type), intent(inout) :: run
+    type(balance_type) :: balance
+    balance = take_balance(run%scene)
+    run%energy = balance%energy
+  end subroutine note_energy
 
   !> Goes on until the wave has come to `stop_distance` and all has burnt, or until `latest`: then is_done; or until it has come to
   !> the room that the mesh has. c: number of the charge. Fatal (bad input) where the end of the deck's run comes first.
@@ -268,7 +279,7 @@ contains
     type(blast_run_type), intent(in) :: run
     integer, intent(in) :: foot
     type(radial_profile_type) :: profile
-    type(flow_totals_type) :: totals
+    type(balance_type) :: balance
     real(wp), allocatable :: table(:, :, :)
     real(wp) :: limit
     integer :: n, low, high, i, j
@@ -277,8 +288,12 @@ contains
       profile%thickness = mesh%spacing(1)
       profile%time = run%scene%clock%time
       profile%front = run%front
-      totals = sum_flow(mesh, flow)
-      profile%afterburnt = run%afterburnt + totals%afterburnt
+      balance = take_balance(run%scene)
+      profile%afterburnt = run%afterburnt + balance%flow%afterburnt
+      associate (material => run%scene%deck%material(find_material(run%scene%deck, run%scene%deck%charge(1)%explosive)))
+        profile%energy_error = run%energy_error + (balance%energy - run%energy)*material%density/material%energy_per_volume &
+                               /balance%flow%mass(findloc(flow%name == material%name, .true., dim=1))
+      end associate
       limit = min(run%disturbed, run%front + (foot - 1)*mesh%spacing(1))
       n = min(cells_to(limit, 1) + 1, mesh%cells(1))
       low = 1

@@ -7,9 +7,10 @@ module charge_start
   use constants, only: unset
   use deck, only: deck_text
   use deck_types, only: deck_type
-  use errors, only: fatal, exit_bad_input
+  use errors, only: fatal, warn, exit_bad_input
   use kinds, only: wp, i8
   use log, only: say
+  use parallel, only: is_root
   use radial_mapping, only: map_profile
   use radial_profile, only: blast_type, radial_profile_type
   use radial_run, only: run_radially, radial_deck
@@ -22,6 +23,7 @@ module charge_start
   private
   public :: start_charges, fingerprint_of_start
 
+  real(wp), parameter :: noticeable = 0.01_wp !< of the energy of a charge
   real(wp), parameter :: same = 1e-9_wp !< of two lengths that are one
 
 contains
@@ -52,6 +54,8 @@ contains
         call map_profile(scene%mesh, scene%flow, blast(i))
         if (deck%charge(c)%start_file /= '' .and. .not. is_read(i)) call write_start_file(trim(deck%charge(c)%start_file), &
           blast(i)%profile, fingerprint_of_start(deck, c), stop_radius(i))
+        if (abs(blast(i)%profile%energy_error) > noticeable .and. is_root()) call warn('start of charge '//str(c)// &
+          ': repairs have changed its energy by '//str(100*blast(i)%profile%energy_error, 3)//' %')
         call say('start of charge '//str(c)//': its wave has come to the '// &
                  trim(merge('distance', 'radius  ', blast(i)%axis > 0))//' '//str(blast(i)%profile%front, 5)//' '// &
                  trim(labels%length)//' at '//str(time, 6)//' '//trim(labels%time)//origin(deck%charge(c)%start_file, is_read(i)))

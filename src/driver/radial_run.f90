@@ -1,10 +1,9 @@
 !> The blast of one charge on a fine mesh of its own, in one radial direction, whose mesh grows with the wave.
 module radial_run
-  use blast_run, only: blast_run_type, keep_gauges, note_step, profile_of, run_until, start_run, table_of
+  use blast_run, only: blast_run_type, keep_gauges, note_energy, note_step, profile_of, run_until, start_run, table_of
   use blocks, only: block
   use charge_reach, only: ambient_region, cells_in_charge, charge_radius
   use deck_types, only: deck_type, region_group
-  use flow_totals, only: flow_totals_type, sum_flow
   use kinds, only: wp
   use log, only: be_quiet
   use mesh, only: mesh_type
@@ -98,9 +97,9 @@ contains
     type(blast_run_type), intent(inout) :: run
     type(deck_type), intent(in) :: deck
     type(blast_run_type) :: longer
-    type(flow_totals_type) :: totals
+    type(radial_profile_type) :: profile
     associate (old => run%scene, new => longer%scene)
-      totals = sum_flow(old%mesh, old%flow)
+      profile = profile_of(run, margin)
       call start_run(longer, deck)
       call put_columns(new%mesh, table_of(old%mesh, old%flow%w(:, old%flow%current), old%flow%layout%n_rows), &
                        new%flow%w(:, new%flow%current))
@@ -108,12 +107,14 @@ contains
       call put_columns(new%mesh, table_of(old%mesh, run%impulse, 2), longer%impulse)
       new%clock = old%clock
       new%flow%time = old%flow%time
-      longer%afterburnt = run%afterburnt + totals%afterburnt
+      longer%afterburnt = profile%afterburnt
+      longer%energy_error = profile%energy_error
       longer%gauge = run%gauge
       longer%n_seen_at = run%n_seen_at
       call move_alloc(run%seen, longer%seen)
       call move_alloc(run%seen_at, longer%seen_at)
     end associate
+    call note_energy(longer)
     run = longer
   end subroutine grow
 

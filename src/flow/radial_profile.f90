@@ -20,6 +20,7 @@ module radial_profile
     real(wp) :: time = 0 !< of the state
     real(wp) :: front = 0 !< largest distance from the centre that the leading wave has reached
     real(wp) :: afterburnt = 0 !< energy that afterburn has released
+    real(wp) :: energy_error = 0 !< by which repairs have changed the energy, over that of the charge
     real(wp) :: end_distance(2) = 0 !< from the centre to the faces across the axis, low and high
     character(16) :: end_kind(2) = '' !< what these faces are, as a deck says it
     real(wp), allocatable :: state(:, :, :) !< (row of the flow, shell, layer): from the centre to where nothing has come yet

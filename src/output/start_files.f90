@@ -38,7 +38,7 @@ contains
     call put_attribute(file, '/', 'radial_power', [profile%radial_power])
     call put_attribute(file, '/', 'sizes', shape(profile%state))
     call put_attribute(file, '/', 'figures', [profile%thickness, profile%time, profile%front, profile%afterburnt, stop_radius, &
-      profile%height, profile%bottom, profile%finest, profile%end_distance])
+      profile%height, profile%bottom, profile%finest, profile%end_distance, profile%energy_error])
     call put_attribute(file, '/', 'ends', profile%end_kind(1)//profile%end_kind(2))
     call put_whole(file, 'state', reshape(profile%state, [size(profile%state)]), size(profile%state, 1))
     call put_whole(file, 'felt', reshape(profile%felt, [size(profile%felt)]), n_felt)
@@ -59,7 +59,7 @@ contains
     real(wp), intent(out) :: stop_radius
     type(hdf5_file) :: file
     character(:), allocatable :: found
-    real(wp) :: figures(10)
+    real(wp) :: figures(11)
     real(wp), allocatable :: values(:)
     integer :: power(1), sizes(3)
     stop_radius = 0
@@ -84,6 +84,7 @@ contains
     profile%bottom = figures(7)
     profile%finest = figures(8)
     profile%end_distance = figures(9:10)
+    profile%energy_error = figures(11)
     allocate (values(product(sizes)))
     call get_slab(file, 'state', values, 0_int64, sizes(1))
     profile%state = reshape(values, sizes)
