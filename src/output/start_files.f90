@@ -39,7 +39,8 @@ contains
     call put_attribute(file, '/', 'sizes', shape(profile%state))
     call put_attribute(file, '/', 'figures', [profile%thickness, profile%time, profile%front, profile%afterburnt, stop_radius, &
       profile%height, profile%bottom, profile%finest, profile%end_distance, profile%energy_error])
-    call put_attribute(file, '/', 'ends', profile%end_kind(1)//profile%end_kind(2))
+    call put_attribute(file, '/', 'low_end', trim(profile%end_kind(1)))
+    call put_attribute(file, '/', 'high_end', trim(profile%end_kind(2)))
     call put_whole(file, 'state', reshape(profile%state, [size(profile%state)]), size(profile%state, 1))
     call put_whole(file, 'felt', reshape(profile%felt, [size(profile%felt)]), n_felt)
     call put_attribute(file, '/', 'gauges', [size(profile%gauge, 2)])
@@ -72,8 +73,10 @@ contains
     call get_attribute(file, '/', 'radial_power', power)
     call get_attribute(file, '/', 'sizes', sizes)
     call get_attribute(file, '/', 'figures', figures)
-    call get_attribute(file, '/', 'ends', found)
-    profile%end_kind = [found(:len(profile%end_kind)), found(len(profile%end_kind) + 1:)]
+    call get_attribute(file, '/', 'low_end', found)
+    profile%end_kind(1) = found
+    call get_attribute(file, '/', 'high_end', found)
+    profile%end_kind(2) = found
     profile%radial_power = power(1)
     profile%thickness = figures(1)
     profile%time = figures(2)
