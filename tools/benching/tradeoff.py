@@ -55,7 +55,8 @@ def table(lines):
     rows = [[line.series, line.mesh, str(line.cells), str(line.particles or "-"), seconds(line.user_s), seconds(line.wall_s),
              "-" if math.isnan(line.memory_mb) else f"{line.memory_mb:.0f}", f"{line.core_hours:.2g}",
              *(percent(figures) for figures in line.measures.values())] for line in lines]
-    return markdown(["run", "mesh", "cells", "particles", "processor [s]", "wall [s]", "memory [MB]", "core-hours", *lines[0].measures], rows)
+    head = ["run", "mesh", "cells", "particles", "processor [s]", "wall [s]", "memory [MB]", "core-hours"]
+    return markdown([*head, *lines[0].measures], rows)
 
 
 def largest_error(line):

@@ -58,14 +58,19 @@ def timed(command):
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before, time.monotonic() - start, done.stdout
 
 
-def deck_run(scene, series, mesh, settings, folder):
-    """The line of one run of a deck, without measures; a setting 'deck=NAME' takes another deck than the scene's."""
+def deck_command(scene, settings):
+    """The program with a deck and settings; 'deck=NAME' among them takes another deck than the scene's."""
     decks = [setting[5:] for setting in settings if setting.startswith("deck=")]
-    settings = [*scene.settings, *(setting for setting in settings if not setting.startswith("deck=")), "output%restart_interval=0"]
-    deck = ROOT / f"input/{(decks or [scene.deck])[-1]}.nml"
+    others = [setting for setting in settings if not setting.startswith("deck=")]
+    return [PROGRAM, ROOT / f"input/{(decks or [scene.deck])[-1]}.nml",
+            *arguments([*scene.settings, *others, "output%restart_interval=0"])]
+
+
+def deck_run(scene, series, mesh, settings, folder):
+    """The line of one run of a deck, without measures."""
     for left in folder.glob("snapshot_*"):  # of another run
         left.unlink()
-    cost = timed([PROGRAM, deck, "--quiet", "--output", folder, *arguments(settings)])
+    cost = timed([*deck_command(scene, settings), "--quiet", "--output", folder])
     if cost is None:
         return None
     summary = json.loads((folder / "summary.json").read_text())

@@ -68,10 +68,10 @@ def free_air(z, end):
     """1 kg of TNT, an eighth of it in a cube of 1.2 times the distance that counts; all until the positive phase is over there."""
     side = 1.2 * z
     half = ["charge%start=spherical", f"charge%start_stop={0.5 * z}"]
-    return Scene(f"free_air_{z:g}", "4800 cells along the radius", blast("place"), "blasts", "free_air_blast",
+    return Scene(f"free_air_{z:g}", "2400 cells along the radius", blast("place"), "blasts", "free_air_blast",
                  runs(series({"paper": PAPER}), cubes(48)) + runs(series({"fifth order": [], "start to Z/2": half}), cubes(24, 48))
                  + runs(series({"start to the faces": ["charge%start=spherical"]}), cubes(24)),
-                 finest(4800, 1, 1, settings=["mesh%geometry=spherical"]),
+                 finest(2400, 1, 1, settings=["mesh%geometry=spherical"]),
                  (f"mesh%upper={side:g},{side:g},{side:g}", f"run%end_time={end}", "output%snapshot_interval=0", "output%peak_maps=.false.",
                   *gauges([z] * 4, ["place", "b", "c", "d"])), quick=("24x24x24",))
 
