@@ -27,13 +27,15 @@ printf 'time [-],gas.pressure [-]\n0.0,1.0\n0.5,%s\n0.6' "$pressure" >"$2/gauges
 echo '{"cells": [100, 2, 1], "particles": 40, "peak_memory_bytes": 3e6, "wall_seconds_by_phase": {"flow": 1}}' >"$2/summary.json"
 for ((i = 0; i < 20000; i++)); do :; done
 END
-# flow_bench: two lines of Sod's tube.
+# flow_bench: two lines of Sod's tube; the second call is the fastest.
 cat >flow_bench <<'END'
 #!/usr/bin/env bash
-echo "$*" >flow_bench_arguments
+echo "$*" >>flow_bench_arguments
+tens=$((($(wc -l <flow_bench_arguments) + 1) % 3 + 1)) # 3, 1, 2
+for ((i = 0; i < 20000; i++)); do :; done
 echo 'case,scheme,cells_x,cells_y,cells_z,wall_s,measures'
-echo 'sod,paper,100,1,1,3.6000E+01,"density=2.0E-02|velocity=1.0E-02|pressure=5.0E-03|"'
-echo 'sod,fifth_order+sensor,100,1,1,5.0E-01,"density=1.0E-02|velocity=1.0E-02|pressure=5.0E-03|"'
+echo "sod,paper,100,1,1,${tens}0.0,"'"density=2.0E-02|velocity=1.0E-02|pressure=5.0E-03|"'
+echo 'sod,fifth_order+sensor,100,1,1,0.5,"density=1.0E-02|velocity=1.0E-02|pressure=5.0E-03|"'
 END
 chmod +x brisance flow_bench
 tradeoff() { BRISANCE_EXE=$work/brisance FLOW_BENCH_EXE=$work/flow_bench "$python" "$source_folder/tools/benching" tradeoff . "$@"; }
@@ -49,8 +51,9 @@ check "core-hours are those of the processor" \
   awk -F, '$1 == "piston" { n++; wrong += !($6 > 0 && $9 > 0.999 * $6 / 3600 && $9 < 1.001 * $6 / 3600) } END { exit !(n == 6 && !wrong) }' tradeoff.csv
 check "another scene runs" tradeoff --case sod --quick
 check "schemes of flow_bench" grep -q -- '--case sod --schemes paper,muscl+third_order+sensor,fifth_order+sensor,.* --quick' flow_bench_arguments
-check "its errors" row '^| paper | 100 | 100 | - | 36.0 | 36.0 | - | 0.01 | 2.00 % | 1.00 % | 0.50 % |$'
-check "names of its schemes" row '^| fifth order | 100 | 100 | - | 0.5 | 0.5 | - | 0.00014 | 1.00 % |'
+check "its errors, the least time" row '^| paper | 100 | 100 | - | .* | 10.0 | - | .* | 2.00 % | 1.00 % | 0.50 % |$'
+check "processor time is part of the wall time" awk -F, '$1 == "sod" { n++; wrong += !($6 > 0 && $6 <= $7) } END { exit !(n == 6 && !wrong) }' tradeoff.csv
+check "names of its schemes" row '^| fifth order | 100 | 100 | - | .* | 0.5 | - | .* | 1.00 % |'
 check "lines of other scenes are kept" row '^| lg_cfibm | 100x1x1 |.*+10.00 % |$'
 check "a scene that runs again is replaced" tradeoff --case piston
 check "no line twice" [ "$(grep -c '^| lg_cfibm | 100x1x1 |' tradeoff.md)" -eq 1 ]
