@@ -4,6 +4,9 @@ import csv
 import math
 import sys
 
+import numpy as np
+from matplotlib.ticker import LogLocator, NullFormatter
+
 from style import plt, save
 from tables import markdown, ordered
 from tradeoff_runs import Line, lines_of
@@ -66,7 +69,7 @@ def largest_error(line):
 
 def picture(path, scenes, lines):
     """A panel for each scene: largest error of a run against its processor time, a line for each series."""
-    columns = min(3, len(scenes))
+    columns = 2 if len(scenes) == 4 else min(3, len(scenes))
     rows = -(-len(scenes) // columns)
     figure, panels = plt.subplots(rows, columns, figsize=(max(3.7 * columns, 6.4), 4.0 if len(scenes) == 1 else 3.2 * rows),
                                   layout="constrained", squeeze=False)
@@ -77,7 +80,13 @@ def picture(path, scenes, lines):
         for name in ordered(line.series for line in mine):
             chosen = [line for line in mine if line.series == name]
             panel.plot([line.user_s for line in chosen], [largest_error(line) for line in chosen], "o-", markersize=4, label=name)
-        panel.set(xscale="log", yscale="log", title=scene.name)
+        panel.set(xscale="log", yscale="log", title=scene.name.replace("_", " "))
+        for axis in (panel.xaxis, panel.yaxis):
+            axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axis.set_major_formatter("{x:g}")
+            axis.set_minor_formatter(NullFormatter())
+            if np.diff(np.log10(axis.get_view_interval())) > 1.9:
+                axis.set_major_locator(LogLocator())
         panel.grid(True, which="both", linewidth=0.3, alpha=0.5)
         panel.legend(fontsize=7)
     figure.supxlabel("processor time [s]", fontsize=9)

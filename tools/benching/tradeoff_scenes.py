@@ -92,7 +92,8 @@ SCENES = [
           + runs(series({"start to the faces": ["charge%start_stop=5.5"]}), cubes(32)), BURST_CURVES,
           ("mesh%upper=6,6,6", "run%end_time=14e-3", *gauges(DISTANCES, [f"{z:.2f} m" for z in DISTANCES])), quick=("32x32x32",)),
     Scene("surface_blast_3d", "4800 cells along the radius", blast("2.0 m"), "surface_blast_3d", "surface_blast_3d",
-          runs(series({"direct": ["charge%start=none"], "start to 1 m": [], "start to 2.1 m": ["charge%start_stop=2.1"]}), cubes(24, 32, 48))
+          runs(series({"direct": ["charge%start=none"], "start to 1 m": [], "start to 2.1 m": ["charge%start_stop=2.1"]}),
+               cubes(24, 32, 48))
           + runs(series({"direct, no sleep": ["charge%start=none", "flow%sleep=.false."]}), cubes(48)),
           finest(4800, 1, 1, settings=["charge%start=none", "mesh%geometry=spherical"]), quick=("24x24x24", "32x32x32")),
     Scene("shock_helium", "the finest run", bubble(["refracted shock in the bubble", "upstream interface, first", "head of the air jet",
@@ -131,5 +132,6 @@ SCENES = [
           runs(series({"four rooms, rigid": ["deck=flat_box_rigid"]}), meshes((55, 55, 4), (110, 110, 8), (220, 220, 16)))
           + runs(series({"four rooms, concrete": ["deck=flat_box_coarse"]}), meshes((120, 120, 22)))
           + runs(series({"an eighth of a room": [], "the same, direct": ["charge%start=none"]}), meshes((27, 27, 8), (54, 54, 16))),
-          finest(81, 81, 24), ("run%end_time=2.2e-3", "output%flow_snapshots=.false.", "output%solid_snapshots=.false."), quick=("27x27x8", "55x55x4")),
+          finest(81, 81, 24), ("run%end_time=2.2e-3", "output%flow_snapshots=.false.", "output%solid_snapshots=.false."),
+          quick=("27x27x8", "55x55x4")),
 ]
