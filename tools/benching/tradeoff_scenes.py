@@ -89,7 +89,8 @@ SCENES = [
     free_air(0.5, 1.0e-3), free_air(1, 2.0e-3), free_air(2, 5.0e-3), free_air(5, 14.0e-3),
     Scene("surface_blast", "the curves of Kingery & Bulmash", BURST_MEASURES, "blasts", "surface_blast_3d",
           runs(series({"direct": ["charge%start=none"]}), cubes(32, 48)) + runs(series({"start to 1 m": []}), cubes(48))
-          + runs(series({"start to the faces": ["charge%start_stop=5.5"]}), cubes(32)), BURST_CURVES,
+          + runs(series({"start to the faces": ["charge%start_stop=5.5"],
+                         "the same, 25 cells in the charge": ["charge%start_stop=5.5", "charge%start_cells=25"]}), cubes(32)), BURST_CURVES,
           ("mesh%upper=6,6,6", "run%end_time=14e-3", *gauges(DISTANCES, [f"{z:.2f} m" for z in DISTANCES])), quick=("32x32x32",)),
     Scene("surface_blast_3d", "4800 cells along the radius", blast("2.0 m"), "surface_blast_3d", "surface_blast_3d",
           runs(series({"direct": ["charge%start=none"], "start to 1 m": [], "start to 2.1 m": ["charge%start_stop=2.1"]}),
