@@ -82,7 +82,7 @@ DISTANCES = (0.5, 1, 2, 5)
 BURST_MEASURES, BURST_CURVES = burst(DISTANCES)
 
 SCENES = [
-    exact("sod", "sod"),
+    exact("sod", "sod", UNSHARPENED),
     exact("two_gas_tube", "sod_two_gases"),
     exact("tnt_air_tube", "tnt_air", UNSHARPENED),
     exact("sedov_3d", "sedov_3", UNSHARPENED, calls=1),
