@@ -1,14 +1,13 @@
 !> The blast of one charge on fine axisymmetric meshes of its own, one after the other as the wave grows: each takes over the state
 !> of the one before as a scene takes over a blast. A sphere that burns from its centre begins along its radius alone.
 module axisymmetric_run
-  use blast_run, only: blast_run_type, keep_gauges, keep_history, note_energy, note_overpressure, note_step, profile_of, &
-    run_until, start_run
+  use blast_run, only: blast_run_type, change_mesh, enter_blast, keep_gauges, keep_history, note_step, profile_of, run_until, &
+    start_run
   use charge_reach, only: burns_from_center, charge_radius, least_reach, reach_of_charge, start_axis
   use deck_types, only: deck_type, gauge_group
   use kinds, only: wp
   use log, only: be_quiet
-  use radial_mapping, only: map_profile
-  use radial_profile, only: blast_type, radial_profile_type, n_felt, felt_arrival, felt_whole_impulse
+  use radial_profile, only: blast_type, radial_profile_type
   use radial_run, only: deck_of_charge, run_radially
   use start_mesh, only: lay_start_mesh, mesh_of_start, start_mesh_type
   implicit none
@@ -44,7 +43,7 @@ contains
       else
         cells = 2*cells
       end if
-      call grow(run, axisymmetric_deck(deck, c, mesh, level, cells, room))
+      call change_mesh(run, axisymmetric_deck(deck, c, mesh, level, cells, room), 'axisymmetric', 2, margin)
     end do
     profile = profile_of(run, margin)
     profile%finest = mesh%thickness
@@ -87,7 +86,7 @@ contains
         call start_run(run, alone)
         call keep_gauges(run, alone, blast_type(axis=2))
         call keep_history(run, blast%profile)
-        call enter(run, blast)
+        call enter_blast(run, blast)
         return
       end if
     end if
@@ -132,50 +131,5 @@ contains
     end do
     call lay_start_mesh(mesh, level, cells, alone, room)
   end function axisymmetric_deck
-
-  !> The same run on another mesh.
-  subroutine grow(run, deck)
-    type(blast_run_type), intent(inout) :: run
-    type(deck_type), intent(in) :: deck
-    type(blast_run_type) :: next
-    type(deck_type) :: mapped
-    mapped = deck
-    if (.not. run%burns()) mapped%charge%start = 'axisymmetric' ! nothing is left to burn
-    call start_run(next, mapped)
-    next%scene%clock = run%scene%clock
-    next%gauge = run%gauge
-    next%n_seen_at = run%n_seen_at
-    call enter(next, blast_type(axis=2, profile=profile_of(run, margin)))
-    call move_alloc(run%seen, next%seen)
-    call move_alloc(run%seen_at, next%seen_at)
-    run = next
-  end subroutine grow
-
-  !> A blast around the origin enters the mesh of a run.
-  subroutine enter(run, blast)
-    type(blast_run_type), intent(inout) :: run
-    type(blast_type), intent(in) :: blast
-    real(wp) :: felt(n_felt), x(3)
-    integer :: b, i, j
-    associate (mesh => run%scene%mesh, flow => run%scene%flow)
-      call map_profile(mesh, flow, blast)
-      run%scene%clock%time = blast%profile%time
-      flow%time = blast%profile%time
-      run%energy_error = blast%profile%energy_error
-      call note_energy(run)
-      call note_overpressure(run, 0.0_wp)
-      do b = 1, mesh%n_local
-        do j = 1, mesh%brick_cells(2)
-          do i = 1, mesh%brick_cells(1)
-            x = mesh%brick(mesh%local(b))%origin + ([i, j, 1] - 0.5_wp)*mesh%spacing
-            if (.not. blast%has_reached(x, mesh%active)) cycle
-            felt = blast%profile%felt_at(blast%place_of(x, mesh%active))
-            run%peaks%map(b)%a(i, :, j, 1) = felt(:felt_arrival)
-            run%impulse(b)%a(i, 1, j, 1) = felt(felt_whole_impulse)
-          end do
-        end do
-      end do
-    end associate
-  end subroutine enter
 
 end module axisymmetric_run

@@ -12,6 +12,7 @@ module blast_run
   use mpi_f08, only: MPI_Allgatherv, MPI_Allreduce, MPI_DOUBLE_PRECISION, MPI_IN_PLACE, MPI_SUM
   use parallel, only: is_root, n_ranks, world
   use peak_maps, only: peak_maps_type, start_peaks, update_peaks
+  use radial_mapping, only: map_profile
   use radial_profile, only: blast_type, radial_profile_type, n_felt, felt_arrival, felt_whole_impulse, n_seen, seen_pressure, &
     seen_density, seen_velocity, seen_along
   use reductions, only: reduce_max
@@ -20,7 +21,8 @@ module blast_run
   use text, only: str
   implicit none
   private
-  public :: start_run, run_until, keep_gauges, note_step, note_overpressure, note_energy, keep_history, profile_of, table_of
+  public :: start_run, run_until, change_mesh, enter_blast, keep_gauges, note_step, note_energy, keep_history, profile_of, &
+    table_of
 
   real(wp), parameter :: noticeable = 1e-6_wp !< part of pressure and sound speed that counts as the front of the wave
   real(wp), parameter :: slightest = 1e-9_wp !< what is above the noise of relaxation in still surroundings
@@ -230,6 +232,54 @@ contains
       end do
     end do
   end subroutine keep_history
+
+  !> The same run on another mesh, that of a deck. start: of its charges, where nothing is left to burn; axis: along which layers
+  !> are cut, 0 none; foot: as of profile_of.
+  subroutine change_mesh(run, deck, start, axis, foot)
+    type(blast_run_type), intent(inout) :: run
+    type(deck_type), intent(in) :: deck
+    character(*), intent(in) :: start
+    integer, intent(in) :: axis, foot
+    type(blast_run_type) :: next
+    type(deck_type) :: mapped
+    mapped = deck
+    if (.not. run%burns()) mapped%charge%start = start
+    call start_run(next, mapped)
+    next%scene%clock = run%scene%clock
+    next%gauge = run%gauge
+    next%n_seen_at = run%n_seen_at
+    call enter_blast(next, blast_type(axis=axis, profile=profile_of(run, foot)))
+    call move_alloc(run%seen, next%seen)
+    call move_alloc(run%seen_at, next%seen_at)
+    run = next
+  end subroutine change_mesh
+
+  !> A blast around the origin enters the mesh of a run.
+  subroutine enter_blast(run, blast)
+    type(blast_run_type), intent(inout) :: run
+    type(blast_type), intent(in) :: blast
+    real(wp) :: felt(n_felt), x(3)
+    integer :: b, i, j
+    associate (mesh => run%scene%mesh, flow => run%scene%flow)
+      call map_profile(mesh, flow, blast)
+      run%scene%clock%time = blast%profile%time
+      flow%time = blast%profile%time
+      run%energy_error = blast%profile%energy_error
+      call note_energy(run)
+      call note_overpressure(run, 0.0_wp)
+      do b = 1, mesh%n_local
+        do j = 1, mesh%brick_cells(2)
+          do i = 1, mesh%brick_cells(1)
+            x = mesh%brick(mesh%local(b))%origin + ([i, j, 1] - 0.5_wp)*mesh%spacing
+            if (.not. blast%has_reached(x, mesh%active)) cycle
+            felt = blast%profile%felt_at(blast%place_of(x, mesh%active))
+            run%peaks%map(b)%a(i, :, j, 1) = felt(:felt_arrival)
+            run%impulse(b)%a(i, 1, j, 1) = felt(felt_whole_impulse)
+          end do
+        end do
+      end do
+    end associate
+  end subroutine enter_blast
 
   !> Rows of the flow that a history has.
   pure function columns_seen(run) result(columns)

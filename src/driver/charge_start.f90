@@ -148,6 +148,8 @@ contains
       finest = minval(charge_extents(deck, c))
       if (charge%start_cells > 0 .and. abs(profile%finest*charge%start_cells - finest) > same*finest) &
         call refuse('its mesh has other cells than start_cells says')
+      if (profile%thickness > minval(deck%mesh%cell_size(), deck%mesh%active())) call refuse('its shells of '// &
+        str(profile%thickness, 4)//' are thicker than the cells of the deck')
       axis = start_axis(deck, c)
       if (axis == 0) return
       distance = [charge%center(axis) - deck%mesh%lower(axis), deck%mesh%upper(axis) - charge%center(axis)]
@@ -193,7 +195,7 @@ contains
     real(wp) :: room
     integer :: i
     if (start_axis(deck, c) == 0) then
-      alone = radial_deck(deck, c, 2*cells_in_charge(deck, c))
+      alone = radial_deck(deck, c, 2*cells_in_charge(deck, c), 0)
     else
       alone = axisymmetric_deck(deck, c, mesh_of_start(deck, c), 0, 2, room)
       alone%charge%start = 'axisymmetric'

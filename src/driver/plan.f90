@@ -113,8 +113,8 @@ contains
                    str(reach, 5)//' '//trim(labels%length)//', '//line)
         else
           call say('start of charge '//str(c)//': '//trim(charge%start)//', '//str(cells_in_charge(deck, c))// &
-                   ' cells in its radius, '//str(ceiling(reach/h))//' of '//str(h, 4)//' '//trim(labels%length)// &
-                   ' to the radius '//str(reach, 5)//' '//trim(labels%length)//', '//line)
+                   ' cells in its radius, of '//str(h, 4)//' '//trim(labels%length)// &
+                   ' and larger as the wave grows, to the radius '//str(reach, 5)//' '//trim(labels%length)//', '//line)
         end if
         if (charge%start_file /= '') call say('  kept in '//trim(charge%start_file)//', or taken from there')
       end associate

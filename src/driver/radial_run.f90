@@ -1,6 +1,7 @@
-!> The blast of one charge on a fine mesh of its own, in one radial direction, whose mesh grows with the wave.
+!> The blast of one charge on a fine mesh of its own, in one radial direction, whose mesh grows with the wave: by more cells at
+!> first, and by larger ones when those before the front are many.
 module radial_run
-  use blast_run, only: blast_run_type, keep_gauges, note_energy, note_step, profile_of, run_until, start_run, table_of
+  use blast_run, only: blast_run_type, change_mesh, keep_gauges, note_energy, note_step, profile_of, run_until, start_run, table_of
   use blocks, only: block
   use charge_reach, only: ambient_region, cells_in_charge, charge_radius
   use deck_types, only: deck_type, region_group
@@ -15,6 +16,8 @@ module radial_run
   integer, parameter :: brick = 128 !< cells
   integer, parameter :: first_radii = 4 !< charge radii that the mesh reaches over at first
   integer, parameter :: margin = 48 !< cells before the front that hold its foot
+  integer, parameter :: many_cells = 2048 !< a mesh of so many gets larger cells instead of more
+  real(wp), parameter :: coarsest = 0.25_wp !< of a cell of the scene
 
 contains
 
@@ -27,34 +30,42 @@ contains
     real(wp), intent(in) :: stop_radius, latest
     type(radial_profile_type) :: profile
     type(blast_run_type) :: run
-    integer :: cells
+    integer :: cells, doublings
     logical :: was_quiet, is_done
     call be_quiet(was=was_quiet)
+    doublings = 0
     cells = brick*ceiling(real(first_radii*cells_in_charge(deck, c), wp)/brick)
-    call start_run(run, radial_deck(deck, c, cells))
+    call start_run(run, radial_deck(deck, c, cells, doublings))
     call keep_gauges(run, deck, blast_type(center=deck%charge(c)%center))
     call note_step(run)
     do
       call run_until(run, c, stop_radius, latest, (cells - margin)*run%scene%mesh%spacing(1), is_done)
       if (is_done) exit
-      cells = 2*cells
-      call grow(run, radial_deck(deck, c, cells))
+      if (cells >= many_cells .and. .not. run%burns() .and. &
+          2*run%scene%mesh%spacing(1) <= coarsest*minval(deck%mesh%cell_size(), deck%mesh%active())) then
+        doublings = doublings + 1
+        call change_mesh(run, radial_deck(deck, c, cells, doublings), deck%charge(c)%start, 0, margin)
+      else
+        cells = 2*cells
+        call lengthen(run, radial_deck(deck, c, cells, doublings))
+      end if
     end do
     profile = profile_of(run, margin)
-    profile%finest = profile%thickness
+    profile%finest = profile%thickness/2**doublings
     call be_quiet(silent=was_quiet)
   end function run_radially
 
-  !> The deck of that run: the charge alone in still surroundings, on a mesh of so many cells along the radius.
-  function radial_deck(deck, c, cells) result(alone)
+  !> The deck of that run: the charge alone in still surroundings, on a mesh of so many cells along the radius, whose size was
+  !> doubled so often.
+  function radial_deck(deck, c, cells, doublings) result(alone)
     type(deck_type), intent(in) :: deck
-    integer, intent(in) :: c, cells
+    integer, intent(in) :: c, cells, doublings
     type(deck_type) :: alone
     alone = deck_of_charge(deck, c)
     if (allocated(alone%detonator)) alone%detonator%position(1) = 0
     alone%mesh%geometry = deck%charge(c)%start
     alone%mesh%cells(1) = cells
-    alone%mesh%upper(1) = cells*(charge_radius(deck, c)/cells_in_charge(deck, c))
+    alone%mesh%upper(1) = cells*(charge_radius(deck, c)/cells_in_charge(deck, c))*2**doublings
     alone%mesh%brick(1) = brick
     alone%flow%sleep = .false. ! the mesh grows with the wave instead
   end function radial_deck
@@ -93,7 +104,7 @@ contains
   end function deck_of_charge
 
   !> The same run on a longer mesh; what is added is still.
-  subroutine grow(run, deck)
+  subroutine lengthen(run, deck)
     type(blast_run_type), intent(inout) :: run
     type(deck_type), intent(in) :: deck
     type(blast_run_type) :: longer
@@ -116,7 +127,7 @@ contains
     end associate
     call note_energy(longer)
     run = longer
-  end subroutine grow
+  end subroutine lengthen
 
   !> Puts columns into the cells nearest to the centre; there are fewer of them than cells.
   subroutine put_columns(mesh, columns, field)
