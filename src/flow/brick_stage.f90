@@ -292,10 +292,10 @@ contains
       if (present(troubled)) call take_cell_values(n_faces, ld, layout%n_reconstructed, troubled(1 - back, 1, jl, kl), &
         troubled(1, 1, jr, kr), from(1 - back, 1, jl, kl), from(1, 1, jr, kr), left, right)
       if (present(open)) then
-        call set_fan_states(n_faces, ld, layout, eos, normal(1), from(1 - back, c, jl, kl), from(1, c, jr, kr), left, right, &
+        call set_fan_states(n(1) + back, ld, layout, eos, normal(1), from(1 - back, c, jl, kl), from(1, c, jr, kr), left, right, &
           open(1 - back, 1, jl, kl), open(1, 1, jr, kr))
       else
-        call set_fan_states(n_faces, ld, layout, eos, normal(1), from(1 - back, c, jl, kl), from(1, c, jr, kr), left, right)
+        call set_fan_states(n(1) + back, ld, layout, eos, normal(1), from(1 - back, c, jl, kl), from(1, c, jr, kr), left, right)
       end if
       if (layout%n_materials == 1) then
         call hllc_single(n_faces, ld, layout, eos(1), normal, left, from(1 - back, c, jl, kl), right, from(1, c, jr, kr), flux, &

@@ -13,14 +13,16 @@ module strong_fans
 
   !> The most that may be left of the density where the face lies in the fan, and behind it; more is not strong.
   real(wp), parameter :: most_left_within = 0.9_wp, most_left_behind = 0.75_wp
-  real(wp), parameter :: least_jump = 0.1_wp !< of the pressure, over the smaller r c**2: with less there is no such fan
-  real(wp), parameter :: step = 1.0_wp/16 !< of ln r along an isentrope
-  integer, parameter :: most_steps = 160
+  real(wp), parameter :: least_jump = 0.1_wp !< of the pressure, over the smaller r c**2: faces with less are not looked at
+  real(wp), parameter :: least_lack = 0.08_wp !< of the velocity, in sound speeds: less is made up for before a fan gets strong
+  real(wp), parameter :: step = 0.1_wp !< of ln r along an isentrope
+  integer, parameter :: most_steps = 100
 
   !> A state on the isentrope of a face value, all its materials expanded alike, as HLLC does.
   type :: fan_type
     real(wp) :: part = 1 !< of the density that is left
     real(wp) :: pressure = 0
+    real(wp) :: bulk = 0 !< r c**2
     real(wp) :: speed = 0 !< towards the side of the lower pressure
     real(wp) :: energy(max_materials) = 0 !< of materials whose energy is stored
   end type fan_type
@@ -37,40 +39,42 @@ contains
     real(wp), intent(in) :: c_left(n), c_right(n)
     real(wp), intent(inout) :: left(ld, layout%n_reconstructed), right(ld, layout%n_reconstructed)
     real(wp), intent(in), optional :: open_left(n), open_right(n)
-    real(wp) :: state(layout%n_reconstructed)
-    logical :: found
-    integer :: i, r, p
+    real(wp), dimension(layout%n_reconstructed) :: high, low, state
+    logical :: found, up
+    integer :: i, v, r, p
     r = layout%density_row
     p = layout%pressure_row
-    if (.not. strongest(n, left(1, r), left(1, p), c_left, right(1, r), right(1, p), c_right) > 0) return
+    if (.not. any_jump(n, left(1, p), right(1, p))) return
     do i = 1, n
-      if (.not. strongest(1, left(i, r), left(i, p), c_left(i), right(i, r), right(i, p), c_right(i)) > 0) cycle
+      if (abs(right(i, p) - left(i, p)) <= least_jump*min(left(i, r)*c_left(i)**2, right(i, r)*c_right(i)**2)) cycle
       if (present(open_left)) then
         if (.not. open_left(i)*open_right(i) > 0) cycle
       end if
-      if (left(i, p) > right(i, p)) then
-        call expand(layout, eos, u, 1, left(i, :), right(i, :), state, found)
-      else
-        call expand(layout, eos, u, -1, right(i, :), left(i, :), state, found)
-      end if
+      up = left(i, p) > right(i, p)
+      do v = 1, layout%n_reconstructed
+        high(v) = merge(left(i, v), right(i, v), up)
+        low(v) = merge(right(i, v), left(i, v), up)
+      end do
+      call expand(layout, eos, u, merge(1, -1, up), high, low, state, found)
       if (.not. found) cycle
       left(i, :) = state
       right(i, :) = state
     end do
   end subroutine set_fan_states
 
-  !> The strongest jump of the pressure at n faces, less the least that counts.
-  pure real(wp) function strongest(n, r_left, p_left, c_left, r_right, p_right, c_right)
+  !> Whether the pressure changes at one of n faces by more than that part of its lower value, which is below any r c**2.
+  pure logical function any_jump(n, left, right)
     integer, intent(in) :: n
-    real(wp), intent(in), dimension(n) :: r_left, p_left, c_left, r_right, p_right, c_right
+    real(wp), intent(in) :: left(n), right(n)
+    real(wp) :: most
     integer :: i
-    strongest = -1
-    !$omp simd reduction(max:strongest)
+    most = -1
+    !$omp simd reduction(max:most)
     do i = 1, n
-      strongest = max(strongest, abs(p_right(i) - p_left(i)) &
-        - least_jump*min(r_left(i)*(c_left(i)*c_left(i)), r_right(i)*(c_right(i)*c_right(i))))
+      most = max(most, abs(right(i) - left(i)) - least_jump*min(left(i), right(i)))
     end do
-  end function strongest
+    any_jump = most > 0
+  end function any_jump
 
   !> Follows the isentrope of the side of the higher pressure down to where it moves at its speed of sound, or as the other side
   !> does at the same pressure. way: 1 if the other side lies above, -1 below. found: it expands much to get there, and moves
@@ -87,26 +91,28 @@ contains
     integer :: i, n
     n = layout%n_materials
     a = fractions(layout, low)
-    stiffness = max(bulk(layout, eos, low, a, fan_type(pressure=low(layout%pressure_row))), 0.0_wp)
+    stiffness = bulk_modulus(layout, eos, low, a, 1.0_wp, low(layout%pressure_row))
     width = 1 + 0.5_wp/sum(a*eos%over_g)
     a = fractions(layout, high)
     fan%pressure = high(layout%pressure_row)
+    fan%bulk = bulk_modulus(layout, eos, high, a, 1.0_wp, fan%pressure)
     fan%speed = way*high(u)
     do i = 1, n
       if (layout%energy_row(i) > 0) fan%energy(i) = high(layout%energy_row(i))
     end do
+    state = high
+    found = .false.
     lack_before = 0
     do i = 0, most_steps
-      sound = sound_speed(layout, eos, high, a, fan)
+      sound = sqrt(fan%bulk/(fan%part*high(layout%density_row)))
       lead = speed_of_low(fan%pressure - low(layout%pressure_row))
       lack = min(sound, lead) - fan%speed
       if (.not. lack > 0) exit
+      if (i == 0 .and. lead - fan%speed < least_lack*sound) return ! little would be left to expand, as at a shock
       before = fan
       lack_before = lack
       call follow(layout, eos, high, a, step, fan)
     end do
-    state = high
-    found = .false.
     if (i == 0 .or. .not. lack <= 0) return
     fan = before
     call follow(layout, eos, high, a, step*lack_before/(lack_before - lack), fan)
@@ -136,41 +142,32 @@ contains
     type(eos_type), intent(in) :: eos(layout%n_materials)
     real(wp), intent(in) :: high(:), a(:), dx
     type(fan_type), intent(inout) :: fan
-    type(fan_type) :: middle
+    real(wp) :: energy(layout%n_materials), part, pressure, bulk
     integer :: n
     n = layout%n_materials
-    middle%part = fan%part*exp(-0.5_wp*dx)
-    middle%pressure = fan%pressure - 0.5_wp*dx*bulk(layout, eos, high, a, fan)
-    middle%energy(:n) = fan%energy(:n) - 0.5_wp*dx*(fan%energy(:n) + a*fan%pressure)
+    part = fan%part*exp(-0.5_wp*dx)
+    pressure = fan%pressure - 0.5_wp*dx*fan%bulk
+    energy = fan%energy(:n) - 0.5_wp*dx*(fan%energy(:n) + a*fan%pressure)
+    bulk = bulk_modulus(layout, eos, high, a, part, pressure)
     fan%part = fan%part*exp(-dx)
-    fan%pressure = fan%pressure - dx*bulk(layout, eos, high, a, middle)
-    fan%speed = fan%speed + dx*sound_speed(layout, eos, high, a, middle)
-    fan%energy(:n) = fan%energy(:n) - dx*(middle%energy(:n) + a*middle%pressure)
+    fan%pressure = fan%pressure - dx*bulk
+    fan%speed = fan%speed + dx*sqrt(bulk/(part*high(layout%density_row)))
+    fan%energy(:n) = fan%energy(:n) - dx*(energy + a*pressure)
+    fan%bulk = bulk_modulus(layout, eos, high, a, fan%part, fan%pressure)
   end subroutine follow
 
-  !> Sound speed of a state in a fan; 0 where there is none.
-  pure real(wp) function sound_speed(layout, eos, high, a, fan)
+  !> r c**2 of face values with fractions a at another pressure, with a part of their density; 0 where there is no sound.
+  pure real(wp) function bulk_modulus(layout, eos, values, a, part, pressure)
     type(layout_type), intent(in) :: layout
     type(eos_type), intent(in) :: eos(layout%n_materials)
-    real(wp), intent(in) :: high(:), a(:)
-    type(fan_type), intent(in) :: fan
-    sound_speed = sqrt(max(bulk(layout, eos, high, a, fan), 0.0_wp)/(fan%part*high(layout%density_row)))
-  end function sound_speed
-
-  !> r c**2 of a state on the isentrope of a face value with fractions a.
-  pure real(wp) function bulk(layout, eos, values, a, fan)
-    type(layout_type), intent(in) :: layout
-    type(eos_type), intent(in) :: eos(layout%n_materials)
-    real(wp), intent(in) :: values(:), a(:)
-    type(fan_type), intent(in) :: fan
-    real(wp) :: m
+    real(wp), intent(in) :: values(:), a(:), part, pressure
     integer :: k
-    bulk = 0
+    bulk_modulus = 0
     do k = 1, layout%n_materials
-      m = fan%part*values(k)
-      bulk = bulk + m*eos(k)%sound_speed_squared(m/a(k), fan%pressure)
+      bulk_modulus = bulk_modulus + part*values(k)*eos(k)%sound_speed_squared(part*values(k)/a(k), pressure)
     end do
-  end function bulk
+    bulk_modulus = max(bulk_modulus, 0.0_wp)
+  end function bulk_modulus
 
   !> Volume fractions on a face.
   pure function fractions(layout, values) result(a)
