@@ -165,6 +165,7 @@ setup_python() {
 # Settings for Open MPI on one machine: quiet, and at ease in a container. Another MPI does not look at them.
 setup_mpi() {
   export OMPI_MCA_btl_base_warn_component_unused=0 OMPI_MCA_btl_vader_single_copy_mechanism=none
+  export GLIBC_TUNABLES=${GLIBC_TUNABLES:-glibc.malloc.hugetlb=1} # huge pages for large arrays (glibc 2.35)
   if ! command -v ssh >/dev/null && ! command -v rsh >/dev/null; then
     export OMPI_MCA_plm=${OMPI_MCA_plm:-isolated} # it would complain that there is no remote shell, which is not needed
   fi

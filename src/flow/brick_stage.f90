@@ -169,7 +169,11 @@ contains
       end do
     end if
     do k = 1, n(3)
-      if (cure .and. stage%active(3)) call sense_plane(k + 1)
+      if (cure .and. stage%active(3)) then
+        do j = 0, n(2) + 1, n(2) + 1
+          if (k < n(3)) call sense_row(j, k + 1)
+        end do
+      end if
       cell_y = 1
       face_y = 0
       if (stage%active(2)) then
@@ -190,6 +194,7 @@ contains
         end if
         if (stage%active(3)) then
           call reconstruct_z(j, k + 1, s%z_high(1, 1, j, 1 - cell_z))
+          if (cure) call sense_row(j, k + 1)
           call flux_across(n(1), 3, j, k, j, k + 1, 0, s%z_high(1, 1, j, cell_z), s%low, s%flux_z(1, 1, j, 1 - face_z))
           if (k == n(3)) call book(6, -1.0_wp, s%flux_z(:, :, j, 1 - face_z))
         end if
@@ -208,16 +213,18 @@ contains
     !> Sensor of plane k; rows and planes of ghosts only as far as faces of the brick need them.
     subroutine sense_plane(k)
       integer, intent(in) :: k
-      integer :: j, edge, p, r
+      integer :: j, edge
       edge = merge(1, 0, k >= 1 .and. k <= n(3))
-      p = layout%pressure_row
-      r = layout%density_row
       do j = 1 - edge, n(2) + edge
-        call sense_shocks(n(1) + 2, stride, reach, from(-back(1), p, j - back(2), k - back(3)), from(0, r, j, k), from(0, c, j, &
-          k), &
-          s%shock(1, j, modulo(k, 2)), s%strongest(j, modulo(k, 2)))
+        call sense_row(j, k)
       end do
     end subroutine sense_plane
+
+    subroutine sense_row(j, k)
+      integer, intent(in) :: j, k
+      call sense_shocks(n(1) + 2, stride, reach, from(-back(1), layout%pressure_row, j - back(2), k - back(3)), &
+        from(0, layout%density_row, j, k), from(0, c, j, k), s%shock(1, j, modulo(k, 2)), s%strongest(j, modulo(k, 2)))
+    end subroutine sense_row
 
     !> Face values of the cells 0..n+1 of a row along it; cell i stands at i + 1.
     subroutine reconstruct_x(j, k)

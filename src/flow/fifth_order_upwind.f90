@@ -23,41 +23,56 @@ contains
     integer :: v, first
     do v = 1, n_var
       first = (v - 1)*ld + 1
-      call bounded_row(n, alpha(v), merge(0.0_wp, huge(1.0_wp), positive(v)), q(first - 2*stride), q(first - stride), q(first), &
-        q(first + stride), q(first + 2*stride), low(1, v), high(1, v))
+      call bounded_row(n, alpha(v), q(first - 2*stride), q(first - stride), q(first), q(first + stride), q(first + 2*stride), &
+        low(1, v), high(1, v))
+      if (positive(v)) call keep_above_zero(n, q(first), low(1, v), high(1, v))
     end do
   end subroutine reconstruct_fifth_order
 
-  !> One variable. slack: how far below 0 its face values may go.
-  pure subroutine bounded_row(n, alpha, slack, second_below, below, here, above, second_above, low, high)
+  !> One variable. x and y are the differences across both faces; the upwind values (2, -13, 47, 27, -3)/60 and their mirror image,
+  !> less the cell value, are written in differences, second differences (curvatures) and the third one.
+  pure subroutine bounded_row(n, alpha, second_below, below, here, above, second_above, low, high)
     integer, intent(in) :: n
-    real(wp), intent(in) :: alpha, slack
+    real(wp), intent(in) :: alpha
     real(wp), intent(in), dimension(n) :: second_below, below, here, above, second_above
     real(wp), intent(inout) :: low(n), high(n)
-    real(wp), parameter :: sixtieth = 1.0_wp/60
-    real(wp) :: x, y, xx, yy, curvature, curvature_above, curvature_below, smallest, largest, allowance, rise, fall, least
+    real(wp) :: x, y, curvature, curvature_above, curvature_below, smallest, largest, allowance, even, odd, unit, most_up, most_down
     integer :: i
-    !$omp simd private(x, y, xx, yy, curvature, curvature_above, curvature_below, smallest, largest, allowance, rise, fall, least)
+    !$omp simd private(x, y, curvature, curvature_above, curvature_below, smallest, largest, allowance, even, odd, unit, &
+    !$omp   most_up, most_down)
     do i = 1, n
       x = above(i) - here(i)
       y = here(i) - below(i)
-      xx = second_above(i) - above(i)
-      yy = below(i) - second_below(i)
       curvature = x - y
-      curvature_above = xx - x
-      curvature_below = y - yy
+      curvature_above = (second_above(i) - above(i)) - x
+      curvature_below = y - (below(i) - second_below(i))
       smallest = min(min(curvature_below, curvature), curvature_above)
       largest = max(max(curvature_below, curvature), curvature_above)
       allowance = max(max(smallest - 0.5_wp*largest, 0.5_wp*smallest - largest), 0.0_wp)
-      rise = sixtieth*((11*y - 2*yy) + (24*x - 3*xx))
-      fall = sixtieth*((11*x - 2*xx) + (24*y - 3*yy))
-      rise = min(max(rise, min(max(x, alpha*y), 0.0_wp) - allowance), max(min(x, alpha*y), 0.0_wp) + allowance)
-      fall = min(max(fall, min(max(y, alpha*x), 0.0_wp) - allowance), max(min(y, alpha*x), 0.0_wp) + allowance)
-      least = least_part*here(i) - slack
-      high(i) = max(here(i) + rise, least)
-      low(i) = max(here(i) - fall, least)
+      even = 0.25_wp*(x + y) + (1.0_wp/24)*(curvature_below - curvature_above)
+      odd = 0.1_wp*curvature - (1.0_wp/120)*(curvature_above + curvature_below)
+      unit = sign(1.0_wp, x)
+      most_up = merge(min(abs(x), alpha*abs(y)), 0.0_wp, x*y > 0) + allowance
+      most_down = merge(min(abs(y), alpha*abs(x)), 0.0_wp, x*y > 0) + allowance
+      high(i) = here(i) + unit*min(max(unit*(even + odd), -allowance), most_up)
+      low(i) = here(i) - unit*min(max(unit*(even - odd), -allowance), most_down)
     end do
   end subroutine bounded_row
+
+  !> Leaves the face values of a variable that is positive a part of the cell value at least.
+  pure subroutine keep_above_zero(n, here, low, high)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: here(n)
+    real(wp), intent(inout) :: low(n), high(n)
+    real(wp) :: least
+    integer :: i
+    !$omp simd private(least)
+    do i = 1, n
+      least = least_part*here(i)
+      low(i) = max(low(i), least)
+      high(i) = max(high(i), least)
+    end do
+  end subroutine keep_above_zero
 
   !> Face values of the first of two fractions stay below 1 as they stay above 0: the second is what the first leaves.
   pure subroutine keep_below_one(n, here, low, high)

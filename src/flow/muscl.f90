@@ -98,15 +98,18 @@ contains
     real(wp), intent(in) :: below(n), here(n), above(n)
     real(wp), intent(inout) :: low(n), high(n)
     real(wp), parameter :: sixth = 1.0_wp/6
-    real(wp) :: x, y, s
+    real(wp) :: x, y, size_x, size_y, s, unit
     integer :: i
-    !$omp simd private(x, y, s)
+    !$omp simd private(x, y, size_x, size_y, s, unit)
     do i = 1, n
       x = above(i) - here(i)
       y = here(i) - below(i)
-      s = x + y
-      high(i) = here(i) + min(max(sixth*(s + x), min(max(x, 2*y), 0.0_wp)), max(min(x, 2*y), 0.0_wp))
-      low(i) = here(i) - min(max(sixth*(s + y), min(max(y, 2*x), 0.0_wp)), max(min(y, 2*x), 0.0_wp))
+      size_x = abs(x)
+      size_y = abs(y)
+      s = size_x + size_y
+      unit = merge(sign(1.0_wp, x), 0.0_wp, x*y > 0)
+      high(i) = here(i) + unit*min(min(sixth*(s + size_x), size_x), 2*size_y)
+      low(i) = here(i) - unit*min(min(sixth*(s + size_y), size_y), 2*size_x)
     end do
   end subroutine third_order_row
 

@@ -15,34 +15,24 @@ module shock_sensor
 
 contains
 
-  !> Part of the shear dissipation, 0 to 1, in each of n cells of a row. stride: distance of neighbours in the active directions;
-  !> p: pressure of the first cell stands at p(1); r, c: density and sound speed. highest: of the row.
+  !> Part of the shear dissipation, 0 to 1, in each of n cells of a row. stride: distance of neighbours in the three directions, 0
+  !> in those that are not active; p: pressure of the first cell stands at p(1); r, c: density and sound speed. highest: of the row.
   pure subroutine sense_shocks(n, stride, reach, p, r, c, part, highest)
-    integer, intent(in) :: n, stride(:), reach
+    integer, intent(in) :: n, stride(3), reach
     real(wp), intent(in) :: p(1 - reach:*), r(n), c(n)
     real(wp), intent(inout) :: part(n)
     real(wp), intent(out) :: highest
-    real(wp) :: jump
-    integer :: i, d, s
-    do d = 1, size(stride)
-      s = stride(d)
-      if (d == 1) then
-        !$omp simd
-        do i = 1, n
-          part(i) = abs(p(i + s) - p(i - s))
-        end do
-      else
-        !$omp simd
-        do i = 1, n
-          part(i) = max(part(i), abs(p(i + s) - p(i - s)))
-        end do
-      end if
-    end do
+    real(wp) :: jump, stiffness
+    integer :: i, x, y, z
+    x = stride(1)
+    y = stride(2)
+    z = stride(3)
     highest = 0
-    !$omp simd private(jump) reduction(max:highest)
+    !$omp simd private(jump, stiffness) reduction(max:highest)
     do i = 1, n
-      jump = part(i) - onset*r(i)*c(i)*c(i)
-      part(i) = min(max(jump, 0.0_wp)/((complete - onset)*r(i)*c(i)*c(i)), 1.0_wp)
+      jump = max(max(abs(p(i + x) - p(i - x)), abs(p(i + y) - p(i - y))), abs(p(i + z) - p(i - z)))
+      stiffness = r(i)*c(i)*c(i)
+      part(i) = min(max(jump - onset*stiffness, 0.0_wp)/((complete - onset)*stiffness), 1.0_wp)
       highest = max(highest, part(i))
     end do
   end subroutine sense_shocks

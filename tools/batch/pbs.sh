@@ -40,6 +40,7 @@ else
   wall_limit=$((walltime - margin))
 fi
 
+export GLIBC_TUNABLES=${GLIBC_TUNABLES:-glibc.malloc.hugetlb=1} # huge pages for large arrays (glibc 2.35)
 # OPTIONS is split at blanks on purpose: it holds several options.
 ${BRISANCE_LAUNCHER:-mpirun} "$brisance" "$DECK" ${OPTIONS:-} --wall-limit "$wall_limit"
 status=$?

@@ -43,6 +43,7 @@ else # d-hh:mm:ss, hh:mm:ss, mm:ss or ss are left
     print 86400*days + seconds - margin }')
 fi
 
+export GLIBC_TUNABLES=${GLIBC_TUNABLES:-glibc.malloc.hugetlb=1} # huge pages for large arrays (glibc 2.35)
 ${BRISANCE_LAUNCHER:-srun} "$brisance" "$@" --wall-limit "$wall_limit"
 status=$?
 echo "brisance ended with status $status"
