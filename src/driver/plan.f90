@@ -41,8 +41,7 @@ contains
       call say('mesh: '//geometry_text(mesh)//product_text(mesh, mesh%cells)//' cells of '//trim(str(mesh%spacing(1)))//' '// &
                trim(labels%length)//', '//str(size(mesh%brick))//' bricks of '//product_text(mesh, mesh%brick_cells)//', '// &
                str(n_ranks)//trim(merge(' rank ', ' ranks', n_ranks == 1)))
-      if (deck%has_flow) call say('flow: '//trim(materials_text(deck))//', scheme '//trim(deck%flow%limiter)//' + '// &
-                                  trim(deck%flow%riemann))
+      if (deck%has_flow) call say('flow: '//trim(materials_text(deck))//', scheme '//scheme_text(deck))
       call tell_explosives(deck, labels)
       call tell_starts(deck, labels)
       if (deck%has_solid) call say('solid: about '//str(nint(particles))//' particles, scheme '//trim(deck%solid%scheme))
@@ -214,6 +213,19 @@ contains
       line = line//trim(deck%material(i)%name)//' ('//trim(deck%material(i)%eos)//')'
     end do
   end function materials_text
+
+  !> The words of &flow that tell the scheme.
+  function scheme_text(deck) result(line)
+    type(deck_type), intent(in) :: deck
+    character(:), allocatable :: line
+    associate (flow => deck%flow)
+      line = trim(flow%reconstruction)
+      if (flow%reconstruction == 'muscl') line = line//' ('//trim(flow%limiter)//')'
+      line = line//' + '//trim(flow%riemann)
+      if (flow%interface /= 'diffuse') line = line//' + '//trim(flow%interface)
+      if (flow%shocks /= 'plain') line = line//' + '//trim(flow%shocks)
+    end associate
+  end function scheme_text
 
   !> A time step from the sound speeds that the materials of the deck have at rest.
   real(wp) function estimated_step(scene) result(dt)
