@@ -103,9 +103,9 @@ contains
   !> there, for faces with at_face, and what afterburn releases at book_afterburn. area, volume: of the faces across x and of the
   !> cells of a row.
   !> Optional, of bricks that have such cells: open: 1 where open, 0 where closed; impulse: the momentum that closed cells receive
-  !> is added to the open cell beside them; troubled: 1 where all fluxes are to be of first order; arrival: time at which a
-  !> detonation front passes; wall: velocity of walls that move and their normals for faces across x, y and z; their impulse is
-  !> added to the closed cell.
+  !> is added to the open cell beside them; troubled: 1 where all fluxes are to be of first order, 2 where that was not enough;
+  !> arrival: time at which a detonation front passes; wall: velocity of walls that move and their normals for faces across x, y and
+  !> z; their impulse is added to the closed cell.
   subroutine advance_brick(n, g, ld, layout, eos, stage, eps2, steepest, positive, at_face, area, volume, from, start, new, &
     booked, s, &
     report, &
@@ -296,7 +296,7 @@ contains
       normal = layout%velocity_row - 1 + turn(:, direction)
       first = layout%momentum_flux - layout%velocity_row
       p = layout%pressure_row
-      if (present(troubled)) call take_cell_values(n_faces, ld, layout%n_reconstructed, troubled(1 - back, 1, jl, kl), &
+      if (present(troubled)) call take_cell_values(n_faces, ld, layout%n_reconstructed, 0.0_wp, troubled(1 - back, 1, jl, kl), &
         troubled(1, 1, jr, kr), from(1 - back, 1, jl, kl), from(1, 1, jr, kr), left, right)
       if (present(open)) then
         call set_fan_states(n(1) + back, ld, layout, eos, normal(1), from(1 - back, c, jl, kl), from(1, c, jr, kr), left, right, &
@@ -304,6 +304,9 @@ contains
       else
         call set_fan_states(n(1) + back, ld, layout, eos, normal(1), from(1 - back, c, jl, kl), from(1, c, jr, kr), left, right)
       end if
+      ! where that was not enough, without fans
+      if (present(troubled)) call take_cell_values(n_faces, ld, layout%n_reconstructed, 1.0_wp, troubled(1 - back, 1, jl, kl), &
+        troubled(1, 1, jr, kr), from(1 - back, 1, jl, kl), from(1, 1, jr, kr), left, right)
       if (layout%n_materials == 1) then
         call hllc_single(n_faces, ld, layout, eos(1), normal, left, from(1 - back, c, jl, kl), right, from(1, c, jr, kr), flux, &
           s%wave)

@@ -1,8 +1,9 @@
-!> Faces in strong fans. HLLC knows no fans: its one jump to the star state gives the face of a charge that is let go, with pressures of
-!> 84000:1 on it, half of its momentum flux, and what the first cells of a fan get wrong stays as heat beside the contact, a number of
-!> cells wide on any mesh. Where the matter on a face expands much, both sides of it get the state that the exact solution has there
-!> (Toro 2009, ch. 4), whose flux HLLC then gives exactly: in the fan the state that moves at its own speed of sound, behind the fan
-!> the one that has the pressure and velocity of the other side after a shock. Weak fans and the faces of shocks are left to HLLC.
+!> Faces in strong fans. HLLC knows no fans: its one jump to the star state gives the face of a charge that is let go, with
+!> pressures of 84000:1 on it, half of its momentum flux, and what the first cells of a fan get wrong stays as heat beside the contact,
+!> a number of cells wide on any mesh. Where the matter on a face expands much, both sides of it get the state that the exact
+!> solution has there (Toro 2009, ch. 4), whose flux HLLC then gives exactly: in the fan the state that moves at its own speed of
+!> sound, behind it the one that has the pressure and velocity of the other side after a shock. Weak fans and the faces of shocks are
+!> left to HLLC.
 module strong_fans
   use equation_of_state, only: eos_type, max_materials
   use flow_layout, only: layout_type
@@ -13,7 +14,7 @@ module strong_fans
 
   !> The most that may be left of the density where the face lies in the fan, and behind it; more is not strong.
   real(wp), parameter :: most_left_within = 0.9_wp, most_left_behind = 0.75_wp
-  real(wp), parameter :: least_jump = 0.1_wp !< of the pressure, over the smaller r c**2: faces with less are not looked at
+  real(wp), parameter :: least_jump = 0.1_wp !< of the pressure, over the smaller pressure and r c**2: less is not looked at
   real(wp), parameter :: least_lack = 0.08_wp !< of the velocity, in sound speeds: less is made up for before a fan gets strong
   real(wp), parameter :: step = 0.1_wp !< of ln r along an isentrope
   integer, parameter :: most_steps = 100
@@ -46,6 +47,7 @@ contains
     p = layout%pressure_row
     if (.not. any_jump(n, left(1, p), right(1, p))) return
     do i = 1, n
+      if (.not. any_jump(1, left(i, p), right(i, p))) cycle ! the same faces, whatever row they stand in
       if (abs(right(i, p) - left(i, p)) <= least_jump*min(left(i, r)*c_left(i)**2, right(i, r)*c_right(i)**2)) cycle
       if (present(open_left)) then
         if (.not. open_left(i)*open_right(i) > 0) cycle
@@ -62,7 +64,7 @@ contains
     end do
   end subroutine set_fan_states
 
-  !> Whether the pressure changes at one of n faces by more than that part of its lower value, which is below any r c**2.
+  !> Whether the pressure changes at one of n faces by more than that part of its lower value, for gases less than r c**2.
   pure logical function any_jump(n, left, right)
     integer, intent(in) :: n
     real(wp), intent(in) :: left(n), right(n)
