@@ -33,6 +33,7 @@ module brick_stage
     logical :: active(3) = [.true., .false., .false.]
     logical :: radial = .false. !< x is a radius
     type(scheme_type) :: scheme
+    logical :: fans = .true. !< faces in strong fans get the exact state
     real(wp) :: trace = 0 !< smallest volume fraction
     real(wp) :: floor_pressure = 0
     real(wp) :: lowest = 0 !< pressures at or below it are bad
@@ -298,10 +299,10 @@ contains
       p = layout%pressure_row
       if (present(troubled)) call take_cell_values(n_faces, ld, layout%n_reconstructed, 0.0_wp, troubled(1 - back, 1, jl, kl), &
         troubled(1, 1, jr, kr), from(1 - back, 1, jl, kl), from(1, 1, jr, kr), left, right)
-      if (present(open)) then
+      if (present(open) .and. stage%fans) then
         call set_fan_states(n(1) + back, ld, layout, eos, normal(1), from(1 - back, c, jl, kl), from(1, c, jr, kr), left, right, &
           open(1 - back, 1, jl, kl), open(1, 1, jr, kr))
-      else
+      else if (stage%fans) then
         call set_fan_states(n(1) + back, ld, layout, eos, normal(1), from(1 - back, c, jl, kl), from(1, c, jr, kr), left, right)
       end if
       ! where that was not enough, without fans

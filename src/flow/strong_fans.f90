@@ -1,9 +1,9 @@
 !> Faces in strong fans. HLLC knows no fans: its one jump to the star state gives the face of a charge that is let go, with
-!> pressures of 84000:1 on it, half of its momentum flux, and what the first cells of a fan get wrong stays as heat beside the contact,
-!> a number of cells wide on any mesh. Where the matter on a face expands much, both sides of it get the state that the exact
-!> solution has there (Toro 2009, ch. 4), whose flux HLLC then gives exactly: in the fan the state that moves at its own speed of
-!> sound, behind it the one that has the pressure and velocity of the other side after a shock. Weak fans and the faces of shocks are
-!> left to HLLC.
+!> pressures of 84000:1 on it, half of its momentum flux, and what the first cells of a fan get wrong stays as heat beside the
+!> contact, a number of cells wide on any mesh. Where the matter on a face expands much, both sides of it get the state that the
+!> exact solution has there (Toro 2009, ch. 4), whose flux HLLC then gives exactly: in the fan the state that moves at its own speed
+!> of sound, behind it the one that has the pressure and velocity of the other side after a shock. Weak fans and the faces of shocks
+!> are left to HLLC.
 module strong_fans
   use equation_of_state, only: eos_type, max_materials
   use flow_layout, only: layout_type
