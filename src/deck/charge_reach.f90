@@ -1,19 +1,24 @@
 !> How far the blast of a charge may go before it meets anything: a face of the domain, a body, another state of the flow, another
-!> charge. Symmetry planes through its centre are no hindrance. All from the deck, before anything is computed.
+!> charge. Symmetry planes through its centre are no hindrance, and faces across the axis of an axisymmetric start neither. All from
+!> the deck, before anything is computed.
 module charge_reach
   use constants, only: pi
   use deck_check_shape, only: inside_shape, shape_type
-  use deck_types, only: deck_type, find_material
+  use deck_types, only: deck_type, find_material, word_length
   use kinds, only: wp
   use text, only: str
   implicit none
   private
-  public :: reach_of_charge, charge_radius, dimensions_of_blast, is_symmetry_of, ambient_region, cells_in_charge
+  public :: reach_of_charge, charge_radius, charge_extents, dimensions_of_blast, is_symmetry_of, ambient_region, cells_in_charge, &
+    start_axis, burns_from_center, is_lit_at_center, is_lit_around_axis
 
+  real(wp), parameter, public :: least_reach = 1.5_wp !< extents of the charge: by then all of it has burnt
   real(wp), parameter :: clearance = 2 !< cells of the scene between the front and what it would meet
   real(wp), parameter :: on_plane = 1e-9_wp !< of a cell: distance of a centre that lies on a symmetry plane
-  integer, parameter :: fewest_cells = 100 !< in the radius of a charge
-  real(wp), parameter :: finer = 4 !< cells of the fine mesh in one of the scene
+  real(wp), parameter :: at_center = 1e-6_wp !< of its radius: distance of a detonator that lies in the centre of a charge
+  !> Along a radius alone, and on an axisymmetric mesh:
+  integer, parameter :: fewest_cells(2) = [100, 24], most_cells(2) = [huge(1), 48] !< in a charge's radius, by default
+  real(wp), parameter :: finer(2) = [4.0_wp, 2.0_wp] !< cells of the fine mesh in one of the scene
 
 contains
 
@@ -36,6 +41,7 @@ contains
         if (.not. mesh%cells(d) > 1) cycle
         do side = 1, 2
           if (is_symmetry_of(deck, c, d, side)) cycle
+          if (d == start_axis(deck, c) .and. stays_axisymmetric(deck%boundary%flow_face(d, side))) cycle
           call meet(merge(center(d) - mesh%lower(d), mesh%upper(d) - center(d), side == 1), 'the face '//trim(face(side, d)))
         end do
       end do
@@ -124,13 +130,101 @@ contains
     end select
   end function charge_radius
 
-  !> Cells of the fine mesh in the radius of charge c: as the deck says, or enough of them for the detonation and for the scene's
-  !> mesh.
+  !> Direction of the axis of charge c where its start is axisymmetric, else 0: as the deck says, or that of the mesh or the
+  !> cylinder, or z.
+  pure integer function start_axis(deck, c) result(axis)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: c
+    axis = 0
+    associate (charge => deck%charge(c))
+      if (charge%start /= 'axisymmetric') return
+      axis = index('xyz', trim(charge%start_axis))
+      if (charge%start_axis /= '') return
+      axis = 3
+      if (charge%shape == 'cylinder') axis = maxloc(abs(charge%axis), dim=1)
+      if (deck%mesh%radial_power() > 0) axis = 2
+    end associate
+  end function start_axis
+
+  !> What a face across the axis may be so that a flow around the axis stays one.
+  pure logical function stays_axisymmetric(face)
+    character(*), intent(in) :: face
+    stays_axisymmetric = any(face == [character(word_length) :: 'symmetry', 'outflow', 'ambient'])
+  end function stays_axisymmetric
+
+  !> True if charge c is a sphere that burns from its centre, or has burnt at once.
+  pure logical function burns_from_center(deck, c)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: c
+    integer :: i
+    associate (charge => deck%charge(c))
+      burns_from_center = charge%shape == 'sphere'
+      if (charge%detonation /= 'programmed') return
+      do i = 1, size(deck%detonator)
+        if (all(deck%detonator(i)%charge /= [0, c])) cycle
+        if (.not. is_lit_at_center(deck, c, i)) burns_from_center = .false.
+      end do
+    end associate
+  end function burns_from_center
+
+  !> True if detonator i is a point in the centre of charge c.
+  pure logical function is_lit_at_center(deck, c, i)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: c, i
+    associate (d => deck%detonator(i))
+      is_lit_at_center = d%shape == 'point' .and. norm2(merge(d%position - deck%charge(c)%center, 0.0_wp, deck%mesh%active())) &
+                         <= at_center*charge_radius(deck, c)
+    end associate
+  end function is_lit_at_center
+
+  !> True if detonator i lights a charge that turns about the axis of charge c in the same way all around.
+  pure logical function is_lit_around_axis(deck, c, i)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: c, i
+    logical :: across(3)
+    real(wp) :: near
+    across = deck%mesh%active() .and. [1, 2, 3] /= start_axis(deck, c)
+    near = at_center*charge_radius(deck, c)
+    associate (d => deck%detonator(i), center => deck%charge(c)%center)
+      select case (d%shape)
+      case ('plane'); is_lit_around_axis = norm2(merge(d%normal, 0.0_wp, across)) <= at_center*norm2(d%normal)
+      case ('line'); is_lit_around_axis = all(abs([d%position, d%end] - [center, center]) <= near .or. .not. [across, across])
+      case default; is_lit_around_axis = all(abs(d%position - center) <= near .or. .not. across)
+      end select
+    end associate
+  end function is_lit_around_axis
+
+  !> Radius of charge c, and the half of its length along its axis.
+  pure function charge_extents(deck, c) result(extents)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: c
+    real(wp) :: extents(2), volume
+    extents = charge_radius(deck, c)
+    associate (charge => deck%charge(c))
+      if (charge%shape /= 'cylinder') return
+      volume = charge%mass/deck%material(find_material(deck, charge%explosive))%density
+      extents(1) = (volume/(2*pi*charge%length_to_diameter))**(1.0_wp/3)
+      extents(2) = extents(1)*charge%length_to_diameter
+    end associate
+  end function charge_extents
+
+  !> Cells of the fine mesh in the radius of charge c, or in what is less of that and half of its length: as the deck says, or
+  !> enough of them for the detonation and for the scene's mesh.
   pure integer function cells_in_charge(deck, c) result(n)
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: c
+    real(wp) :: length
+    integer :: kind
     n = deck%charge(c)%start_cells
-    if (n == 0) n = max(fewest_cells, ceiling(finer*charge_radius(deck, c)/minval(deck%mesh%cell_size(), deck%mesh%active())))
+    if (n > 0) return
+    kind = 1
+    length = charge_radius(deck, c)
+    if (start_axis(deck, c) > 0) then
+      kind = 2
+      length = minval(charge_extents(deck, c))
+    end if
+    n = ceiling(finer(kind)*length/minval(deck%mesh%cell_size(), deck%mesh%active()))
+    n = min(max(n, fewest_cells(kind)), most_cells(kind))
   end function cells_in_charge
 
   !> True if a face is a symmetry plane through the centre of charge c, or the axis or centre that it lies on.

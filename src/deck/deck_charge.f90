@@ -18,9 +18,10 @@ module deck_charge
     real(wp) :: proportions(3) = 1 !< edges of the box, up to a factor
     character(word_length) :: detonation = 'instantaneous' !< 'instantaneous', 'programmed'
     real(wp) :: detonation_speed = unset !< of a programmed one; unset: that of Chapman and Jouguet
-    character(word_length) :: start = 'none' !< 'none', 'spherical', 'cylindrical': geometry of a first run on a fine mesh
+    character(word_length) :: start = 'none' !< 'spherical', 'cylindrical', 'axisymmetric': geometry of a first run on a fine mesh
+    character(word_length) :: start_axis = '' !< 'x', 'y', 'z': of an axisymmetric one; empty: the charge's own, or z
     integer :: start_cells = 0 !< of that mesh in the radius of the charge, 0: chosen
-    real(wp) :: start_stop = unset !< radius at which that run stops; unset: as far as nothing is in the way
+    real(wp) :: start_stop = unset !< distance at which that run stops; unset: as far as nothing is in the way
     character(path_length) :: start_file = '' !< what that run is kept in
     integer :: line = 0
   contains
@@ -48,7 +49,8 @@ contains
     call table%add('proportions', group%proportions, more_than=0.0_wp)
     call table%add('detonation', group%detonation, [character(word_length) :: 'instantaneous', 'programmed'])
     call table%add('detonation_speed', group%detonation_speed, of_velocity, more_than=0.0_wp, usual=[500.0_wp, 2e4_wp])
-    call table%add('start', group%start, [character(word_length) :: 'none', 'spherical', 'cylindrical'])
+    call table%add('start', group%start, [character(word_length) :: 'none', 'spherical', 'cylindrical', 'axisymmetric'])
+    call table%add('start_axis', group%start_axis, [character(word_length) :: '', 'x', 'y', 'z'])
     call table%add('start_cells', group%start_cells, at_least=0)
     call table%add('start_stop', group%start_stop, of_length, more_than=0.0_wp)
     call table%add('start_file', group%start_file)

@@ -1,6 +1,7 @@
 !> Checks of charges whose blast is computed on a fine mesh of its own before it enters the scene.
 module deck_check_start
-  use charge_reach, only: ambient_region, charge_radius, dimensions_of_blast, reach_of_charge
+  use charge_reach, only: ambient_region, charge_extents, charge_radius, dimensions_of_blast, is_lit_around_axis, &
+    is_lit_at_center, least_reach, reach_of_charge, start_axis
   use constants, only: unset
   use deck_keys, only: key_table
   use deck_problems, only: problem_list
@@ -12,7 +13,7 @@ module deck_check_start
   private
   public :: check_starts
 
-  real(wp), parameter :: least_reach = 1.5_wp !< charge radii: by then the whole charge has burnt
+  character, parameter :: axis_name(3) = ['x', 'y', 'z']
 
 contains
 
@@ -44,24 +45,29 @@ contains
     integer, intent(in) :: c
     type(key_table), intent(in) :: table
     type(problem_list), intent(inout) :: problems, warnings
-    character(11), parameter :: keys(3) = [character(11) :: 'start_cells', 'start_stop', 'start_file']
+    character(11), parameter :: keys(4) = [character(11) :: 'start_cells', 'start_stop', 'start_file', 'start_axis']
     character(:), allocatable :: right
     integer :: i
     associate (charge => deck%charge(c))
-      if (.not. charge%is_mapped()) then
-        do i = 1, size(keys)
-          if (i == 1 .and. charge%start_cells == 0) cycle
-          if (i == 3 .and. charge%start_file == '') cycle
-          if (table%is_given(trim(keys(i)))) call warnings%add_at_key(table, trim(keys(i)), 'has no effect without start')
-        end do
-        return
-      end if
+      do i = 1, size(keys)
+        if (i == 1 .and. charge%start_cells == 0) cycle
+        if (i == 3 .and. charge%start_file == '') cycle
+        if (i == 4 .and. charge%start_axis == '') cycle
+        if (table%is_given(trim(keys(i))) .and. .not. charge%is_mapped()) call warnings%add_at_key(table, trim(keys(i)), &
+          'has no effect without start')
+      end do
+      if (.not. charge%is_mapped()) return
       if (charge%start_cells > 0 .and. charge%start_cells < 10) call problems%add_at_key(table, 'start_cells', &
         'a charge needs 10 cells in its radius at least')
-      if (charge%shape /= 'sphere') call problems%add_at_key(table, 'shape', 'only a ''sphere'' can have a start that is '''// &
-        trim(charge%start)//'''')
       right = 'spherical'
       if (dimensions_of_blast(deck) == 2) right = 'cylindrical'
+      if (charge%start == 'axisymmetric') then
+        call check_axis(deck, c, table, problems)
+        return
+      end if
+      if (charge%shape /= 'sphere') call problems%add_at_key(table, 'shape', 'only a ''sphere'' can have a start that is '''// &
+        trim(charge%start)//'''')
+      if (charge%start_axis /= '') call warnings%add_at_key(table, 'start_axis', 'has no effect unless start is ''axisymmetric''')
       if (dimensions_of_blast(deck) == 1) then
         call problems%add_at_key(table, 'start', 'a slab of explosive has none: the mesh needs two directions or a radius')
       else if (charge%start /= right) then
@@ -69,6 +75,28 @@ contains
       end if
     end associate
   end subroutine check_keys
+
+  ! The blast of what turns about an axis of the mesh.
+  subroutine check_axis(deck, c, table, problems)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: c
+    type(key_table), intent(in) :: table
+    type(problem_list), intent(inout) :: problems
+    integer :: axis
+    axis = start_axis(deck, c)
+    associate (charge => deck%charge(c), mesh => deck%mesh)
+      if (dimensions_of_blast(deck) /= 3 .or. mesh%cells(2) == 1) then
+        call problems%add_at_key(table, 'start', 'an ''axisymmetric'' one needs a mesh of three directions, or an axisymmetric one')
+      else if (mesh%radial_power() == 1 .and. axis /= 2) then
+        call problems%add_at_key(table, 'start_axis', 'must be ''y'', the axis of the mesh')
+      end if
+      if (charge%shape == 'box') then
+        call problems%add_at_key(table, 'shape', 'a ''box'' can have no start that is ''axisymmetric''')
+      else if (charge%shape == 'cylinder' .and. norm2(charge%axis) - abs(charge%axis(axis)) > 1e-12_wp*norm2(charge%axis)) then
+        call problems%add_at_key(table, 'axis', 'must be along '//axis_name(axis)//', the axis of the start')
+      end if
+    end associate
+  end subroutine check_axis
 
   ! What holds for the whole scene: all is still until the blasts enter it.
   subroutine check_surroundings(deck, tables, problems, warnings)
@@ -105,7 +133,8 @@ contains
     real(wp) :: reach, radius
     integer :: i
     if (ambient_region(deck, c) == 0) return
-    radius = charge_radius(deck, c)
+    radius = norm2(charge_extents(deck, c))
+    if (deck%charge(c)%shape == 'sphere') radius = charge_radius(deck, c)
     call reach_of_charge(deck, c, reach, obstacle)
     associate (charge => deck%charge(c))
       if (reach < least_reach*radius) then
@@ -120,12 +149,14 @@ contains
       end if
       if (charge%detonation /= 'programmed') return
       do i = 1, size(deck%detonator)
-        associate (d => deck%detonator(i))
-          if (d%charge /= 0 .and. d%charge /= c) cycle
-          if (d%shape /= 'point' .or. norm2(merge(d%position - charge%center, 0.0_wp, deck%mesh%active())) > 1e-6_wp*radius) &
-            call problems%add_at_key(table, 'start', 'must be lit at a point, its centre; the &detonator on line '// &
-              str(d%line)//' is another one')
-        end associate
+        if (all(deck%detonator(i)%charge /= [0, c])) cycle
+        if (start_axis(deck, c) > 0) then
+          if (.not. is_lit_around_axis(deck, c, i)) call problems%add_at_key(table, 'start', &
+            'must be lit on its axis; the &detonator on line '//str(deck%detonator(i)%line)//' lies beside it')
+        else if (.not. is_lit_at_center(deck, c, i)) then
+          call problems%add_at_key(table, 'start', 'must be lit at a point, its centre; the &detonator on line '// &
+            str(deck%detonator(i)%line)//' is another one')
+        end if
       end do
     end associate
   end subroutine check_start

@@ -1,6 +1,6 @@
 !> What a run is going to be, before anything large is allocated: cells, bricks, particles, memory, time step, run time.
 module plan
-  use charge_reach, only: cells_in_charge, charge_radius, reach_of_charge
+  use charge_reach, only: cells_in_charge, charge_radius, reach_of_charge, start_axis
   use chapman_jouguet, only: chapman_jouguet_state
   use deck_types, only: deck_type, find_material, unset
   use equation_of_state, only: eos_type
@@ -12,6 +12,7 @@ module plan
   use parallel, only: n_ranks
   use report, only: duration_text, memory_text
   use scene, only: scene_type
+  use start_mesh, only: mesh_of_start, start_mesh_type
   use text, only: str
   use units, only: unit_labels, unit_labels_type
   implicit none
@@ -89,7 +90,9 @@ contains
   subroutine tell_starts(deck, labels)
     type(deck_type), intent(in) :: deck
     type(unit_labels_type), intent(in) :: labels
+    character, parameter :: axis_name(3) = ['x', 'y', 'z']
     character(:), allocatable :: obstacle, line
+    type(start_mesh_type) :: mesh
     real(wp) :: reach, h
     integer :: c
     do c = 1, size(deck%charge)
@@ -102,9 +105,17 @@ contains
           reach = charge%start_stop
           line = 'as the deck says'
         end if
-        call say('start of charge '//str(c)//': '//trim(charge%start)//', '//str(cells_in_charge(deck, c))// &
-                 ' cells in its radius, '//str(ceiling(reach/h))//' of '//str(h, 4)//' '//trim(labels%length)// &
-                 ' to the radius '//str(reach, 5)//' '//trim(labels%length)//', '//line)
+        if (start_axis(deck, c) > 0) then
+          mesh = mesh_of_start(deck, c)
+          call say('start of charge '//str(c)//': axisymmetric along '//axis_name(start_axis(deck, c))//', '// &
+                   str(cells_in_charge(deck, c))//' cells in its radius, of '//str(mesh%thickness, 4)//' to '// &
+                   str(mesh%coarsest_thickness(), 4)//' '//trim(labels%length)//' as the wave grows to the distance '// &
+                   str(reach, 5)//' '//trim(labels%length)//', '//line)
+        else
+          call say('start of charge '//str(c)//': '//trim(charge%start)//', '//str(cells_in_charge(deck, c))// &
+                   ' cells in its radius, '//str(ceiling(reach/h))//' of '//str(h, 4)//' '//trim(labels%length)// &
+                   ' to the radius '//str(reach, 5)//' '//trim(labels%length)//', '//line)
+        end if
         if (charge%start_file /= '') call say('  kept in '//trim(charge%start_file)//', or taken from there')
       end associate
     end do

@@ -5,7 +5,7 @@ module blast_memory
   use kinds, only: wp
   use mesh, only: mesh_type
   use peak_maps, only: peak_maps_type, n_peaks
-  use radial_profile, only: blast_type, felt_whole_impulse, n_felt, seen_pressure, seen_density, seen_velocity
+  use radial_profile, only: blast_type, felt_whole_impulse, n_felt, seen_along, seen_pressure, seen_density, seen_velocity
   implicit none
   private
   public :: remember_blasts, write_history
@@ -29,8 +29,8 @@ contains
             do k = 1, mesh%brick_cells(2)
               do j = 1, mesh%brick_cells(1)
                 x = mesh%brick(mesh%local(b))%origin + ([j, k, l] - 0.5_wp)*mesh%spacing
-                if (.not. reached(blast(i), x)) cycle
-                felt = blast(i)%profile%felt_at(radius(blast(i), x))
+                if (.not. blast(i)%has_reached(x, mesh%active)) cycle
+                felt = blast(i)%profile%felt_at(blast(i)%place_of(x, mesh%active))
                 call own(peaks%map, b)
                 peaks%map(b)%a(j, :, k, l) = felt(:n_peaks)
               end do
@@ -42,22 +42,11 @@ contains
       do g = 1, gauges%n
         if (.not. gauges%in_flow(g)) cycle
         f = f + 1
-        if (.not. reached(blast(i), gauges%position(:, g))) cycle
-        felt = blast(i)%profile%felt_at(radius(blast(i), gauges%position(:, g)))
+        if (.not. blast(i)%has_reached(gauges%position(:, g), mesh%active)) cycle
+        felt = blast(i)%profile%felt_at(blast(i)%place_of(gauges%position(:, g), mesh%active))
         gauges%impulse(f) = felt(felt_whole_impulse)
       end do
     end do
-  contains
-    pure real(wp) function radius(blast, x)
-      type(blast_type), intent(in) :: blast
-      real(wp), intent(in) :: x(3)
-      radius = norm2(merge(x - blast%center, 0.0_wp, mesh%active))
-    end function radius
-    pure logical function reached(blast, x)
-      type(blast_type), intent(in) :: blast
-      real(wp), intent(in) :: x(3)
-      reached = radius(blast, x) < blast%profile%front
-    end function reached
   end subroutine remember_blasts
 
   !> Writes the rows of the gauges up to the time at which a blast entered the scene, from its run; to be called before
@@ -66,26 +55,33 @@ contains
     type(mesh_type), intent(in) :: mesh
     type(blast_type), intent(in) :: blast(:)
     type(gauges_type), intent(inout) :: gauges
-    integer :: place(gauges%flow%n), i, g, f
-    real(wp) :: away(3, gauges%flow%n), flow(5, gauges%flow%n), radius, dt
+    integer :: known(gauges%flow%n), i, g, f, axis
+    real(wp) :: out(3, gauges%flow%n), flow(5, gauges%flow%n), place(2), dt
     if (gauges%n == 0 .or. size(blast) > 1) return
     f = 0
+    axis = blast(1)%axis
     associate (profile => blast(1)%profile)
       do g = 1, gauges%n
         if (.not. gauges%in_flow(g)) cycle
         f = f + 1
-        away(:, f) = merge(gauges%position(:, g) - blast(1)%center, 0.0_wp, mesh%active)
-        radius = norm2(away(:, f))
-        away(:, f) = away(:, f)/max(radius, tiny(1.0_wp))
-        place(f) = findloc(abs(profile%gauge - radius) <= same_place*radius, .true., dim=1)
+        place = blast(1)%place_of(gauges%position(:, g), mesh%active)
+        out(:, f) = merge(gauges%position(:, g) - blast(1)%center, 0.0_wp, mesh%active .and. [1, 2, 3] /= axis) &
+                    /max(place(1), tiny(1.0_wp))
+        known(f) = 0
+        do i = 1, size(profile%gauge, 2)
+          if (known(f) == 0 .and. norm2(profile%gauge(:, i) - place) <= same_place*norm2(place)) known(f) = i
+        end do
       end do
-      if (any(place == 0)) return
+      if (any(known == 0)) return
       dt = 0
       do i = 1, size(profile%seen_at) - 1 ! the last is the first of the scene
         if (i > 1) dt = profile%seen_at(i) - profile%seen_at(i - 1)
-        do f = 1, size(place)
-          flow(1:2, f) = profile%seen([seen_pressure, seen_density], place(f), i)
-          flow(3:, f) = away(:, f)*profile%seen(seen_velocity, place(f), i)
+        do f = 1, size(known)
+          associate (seen => profile%seen(:, known(f), i))
+            flow(1:2, f) = seen([seen_pressure, seen_density])
+            flow(3:, f) = out(:, f)*seen(seen_velocity)
+            if (axis > 0) flow(2 + axis, f) = seen(seen_along)
+          end associate
         end do
         call note_gauges(gauges, mesh, profile%seen_at(i), dt, flow)
       end do

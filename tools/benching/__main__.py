@@ -3,7 +3,8 @@
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "plotting"))
+for tools in ("plotting", "measuring"):
+    sys.path.insert(1, str(pathlib.Path(__file__).resolve().parent.parent / tools))
 
 import accuracy  # noqa: E402
 import particles  # noqa: E402

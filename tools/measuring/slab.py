@@ -1,13 +1,15 @@
 """Deflection and spall of the slab. Spall: material that has moved away from the front face before it by more than an opening; its
 radius is that of a circle with the same area, its depth the thickness between the back face and the deepest particle that has moved
 so, for several openings."""
-import csv
+from collections import namedtuple
 
 import numpy as np
 
+from run_tables import read_columns
 from snapshot_files import Solid, open_snapshot
 
 OPENINGS = (0.004, 0.008, 0.016)  # m
+NEAR = 0.06  # m from the centre: where the depth is taken
 QUARTERS = 4  # of the slab that the model leaves out, itself included
 
 
@@ -25,30 +27,27 @@ class SlabAlone(Solid):
         return values[self.chosen]
 
 
-def deflection(folder):
-    """Largest displacement of the gauges on the solid and its time."""
-    with open(folder / "gauges.csv", newline="") as file:
-        rows = list(csv.reader(file))
-    data = np.array([[float(v) for v in row] for row in rows[1:]])
-    for column, head in enumerate(rows[0]):
-        if ".displacement_z" not in head:
+Deflection = namedtuple("Deflection", "gauge value time is_peak largest last end")
+Spall = namedtuple("Spall", "time thickness extent failed")  # extent: {opening: (radius, depth)}; failed: {face: part}
+
+
+def deflections(folder):
+    """Of each gauge on the solid: first peak of its displacement [m], or the last value where there is none, its time [s] and which of
+    the two it is; largest and last value, time of the end."""
+    columns = read_columns(folder / "gauges.csv")
+    times = columns["time"]
+    for head, curve in columns.items():
+        if not head.endswith(".displacement_z"):
             continue
-        curve = data[:, column]
-        rising = np.nonzero(np.diff(curve) <= 0)[0]
-        peaks = [i for i in rising if curve[i] > 0.5 * np.nanmax(curve)]
+        peaks = [i for i in np.nonzero(np.diff(curve) <= 0)[0] if curve[i] > 0.5 * np.nanmax(curve)]
         first = peaks[0] if peaks else len(curve) - 1
-        kind = "first peak" if peaks else "still rising at the end"
-        print(f"  {head.split('.displacement')[0]:28s} {1e3 * curve[first]:6.1f} mm at {1e3 * data[first, 0]:.2f} ms ({kind}), "
-              f"largest {1e3 * np.nanmax(curve):.1f} mm, last {1e3 * curve[-1]:.1f} mm at {1e3 * data[-1, 0]:.2f} ms")
+        yield Deflection(head.rpartition(".")[0], curve[first], times[first], bool(peaks), np.nanmax(curve), curve[-1], times[-1])
 
 
-def measure(folder):
-    """Prints deflection, spall radius and spall depth of one run."""
+def spall(folder):
+    """Time and thickness, spall radius and depth [m] for each opening, failed part of both faces: of the last snapshot."""
     files = sorted(folder.glob("snapshot_solid_*.vtkhdf"))
-    first, last = open_snapshot(files[0]), open_snapshot(files[-1])
-    print(f"{folder}: {float(np.ravel(last.time)[0]) * 1e3:.3f} ms")
-    deflection(folder)
-    first, last = SlabAlone(first), SlabAlone(last)
+    first, last = SlabAlone(open_snapshot(files[0])), SlabAlone(open_snapshot(files[-1]))
     order = np.argsort(first.field("id"))
     start = first.position[order]
     ids = first.field("id")[order]
@@ -69,14 +68,27 @@ def measure(folder):
     reference = {k: np.nanmean(v) for k, v in reference.items()}
     behind = np.nonzero(concrete & np.isfinite(moved))[0]
     opening = np.array([moved[i] - reference.get(key[i], np.nan) for i in behind])
+    extent = {}
     for least in OPENINGS:
         deepest = {}
         for i in behind[opening > least]:
             deepest[key[i]] = min(deepest.get(key[i], np.inf), z[i])
-        within = [z.max() + pitch - low for k, low in deepest.items() if np.hypot(k // 100000, k % 100000) * pitch < 0.06]
-        radius = np.sqrt(len(deepest) * pitch ** 2 * QUARTERS / np.pi)
-        print(f"  spall (opening over {1e3 * least:.0f} mm): radius {1e3 * radius:.0f} mm, depth "
-              f"{1e3 * np.mean(within) if within else 0:.0f} mm (mean over 60 mm around the centre) of "
-              f"{1e3 * (z.max() - z.min() + pitch):.0f} mm")
-    for name, face in (("front", z < z.min() + pitch), ("back", z > z.max() - pitch)):
-        print(f"  failed part of the {name} face: {100 * failed[concrete & face].mean():.0f} %")
+        within = [z.max() + pitch - low for k, low in deepest.items() if np.hypot(k // 100000, k % 100000) * pitch < NEAR]
+        extent[least] = np.sqrt(len(deepest) * pitch ** 2 * QUARTERS / np.pi), np.mean(within) if within else 0.0
+    faces = {"front": z < z.min() + pitch, "back": z > z.max() - pitch}
+    return Spall(last.time, z.max() - z.min() + pitch, extent, {name: failed[concrete & face].mean() for name, face in faces.items()})
+
+
+def measure(folder):
+    """Prints deflection, spall radius and spall depth of one run."""
+    found = spall(folder)
+    print(f"{folder}: {found.time * 1e3:.3f} ms")
+    for d in deflections(folder):
+        kind = "first peak" if d.is_peak else "still rising at the end"
+        print(f"  {d.gauge:28s} {1e3 * d.value:6.1f} mm at {1e3 * d.time:.2f} ms ({kind}), largest {1e3 * d.largest:.1f} mm, "
+              f"last {1e3 * d.last:.1f} mm at {1e3 * d.end:.2f} ms")
+    for least, (radius, depth) in found.extent.items():
+        print(f"  spall (opening over {1e3 * least:.0f} mm): radius {1e3 * radius:.0f} mm, depth {1e3 * depth:.0f} mm (mean over "
+              f"{1e3 * NEAR:.0f} mm around the centre) of {1e3 * found.thickness:.0f} mm")
+    for name, part in found.failed.items():
+        print(f"  failed part of the {name} face: {100 * part:.0f} %")

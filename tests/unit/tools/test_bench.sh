@@ -36,7 +36,7 @@ tradeoff() ( # tradeoff SCENE: its sweep, by the program of this build
   OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_plm=isolated OMPI_MCA_ess_singleton_isolated=1 \
     "$python" "$source_folder/tools/benching" tradeoff . --case "$1" --quick
 )
-sweeps() { tradeoff piston >/dev/null && grep -q '^| moving_wall, 200x1x1 |.*| [+-]0.0[0-9] % |$' tradeoff.md && [ -s tradeoff_piston.png ]; }
+sweeps() { tradeoff piston >/dev/null && grep -q '^| moving_wall | 200x1x1 |.*| [+-]0.0[0-9] % |$' tradeoff.md && [ -s tradeoff_bodies.png ]; }
 knows_scenes() { tradeoff nothing 2>&1 >/dev/null | grep -q 'no scene nothing'; }
 explains() { bash "$source_folder/tools/bench" --help | grep -q -e '--schemes'; }
 
