@@ -14,6 +14,7 @@ module brick_stage
   use muscl, only: reconstruct_muscl
   use riemann, only: hllc_single, hllc_materials, close_faces
   use shock_sensor, only: sense_shocks, dissipate_shear
+  use strong_fans, only: set_fan_states
   use update_materials, only: update_row, row_scratch, row_report
   use update_single, only: update_gas, update_stored_energy
   use wall_faces, only: wall_flux
@@ -32,6 +33,7 @@ module brick_stage
     logical :: active(3) = [.true., .false., .false.]
     logical :: radial = .false. !< x is a radius
     type(scheme_type) :: scheme
+    logical :: fans = .true. !< faces in strong fans get the exact state
     real(wp) :: trace = 0 !< smallest volume fraction
     real(wp) :: floor_pressure = 0
     real(wp) :: lowest = 0 !< pressures at or below it are bad
@@ -102,9 +104,9 @@ contains
   !> there, for faces with at_face, and what afterburn releases at book_afterburn. area, volume: of the faces across x and of the
   !> cells of a row.
   !> Optional, of bricks that have such cells: open: 1 where open, 0 where closed; impulse: the momentum that closed cells receive
-  !> is added to the open cell beside them; troubled: 1 where all fluxes are to be of first order; arrival: time at which a
-  !> detonation front passes; wall: velocity of walls that move and their normals for faces across x, y and z; their impulse is
-  !> added to the closed cell.
+  !> is added to the open cell beside them; troubled: 1 where all fluxes are to be of first order, 2 where that was not enough;
+  !> arrival: time at which a detonation front passes; wall: velocity of walls that move and their normals for faces across x, y and
+  !> z; their impulse is added to the closed cell.
   subroutine advance_brick(n, g, ld, layout, eos, stage, eps2, steepest, positive, at_face, area, volume, from, start, new, &
     booked, s, &
     report, &
@@ -295,7 +297,16 @@ contains
       normal = layout%velocity_row - 1 + turn(:, direction)
       first = layout%momentum_flux - layout%velocity_row
       p = layout%pressure_row
-      if (present(troubled)) call take_cell_values(n_faces, ld, layout%n_reconstructed, troubled(1 - back, 1, jl, kl), &
+      if (present(troubled)) call take_cell_values(n_faces, ld, layout%n_reconstructed, 0.0_wp, troubled(1 - back, 1, jl, kl), &
+        troubled(1, 1, jr, kr), from(1 - back, 1, jl, kl), from(1, 1, jr, kr), left, right)
+      if (present(open) .and. stage%fans) then
+        call set_fan_states(n(1) + back, ld, layout, eos, normal(1), from(1 - back, c, jl, kl), from(1, c, jr, kr), left, right, &
+          open(1 - back, 1, jl, kl), open(1, 1, jr, kr))
+      else if (stage%fans) then
+        call set_fan_states(n(1) + back, ld, layout, eos, normal(1), from(1 - back, c, jl, kl), from(1, c, jr, kr), left, right)
+      end if
+      ! where that was not enough, without fans
+      if (present(troubled)) call take_cell_values(n_faces, ld, layout%n_reconstructed, 1.0_wp, troubled(1 - back, 1, jl, kl), &
         troubled(1, 1, jr, kr), from(1 - back, 1, jl, kl), from(1, 1, jr, kr), left, right)
       if (layout%n_materials == 1) then
         call hllc_single(n_faces, ld, layout, eos(1), normal, left, from(1 - back, c, jl, kl), right, from(1, c, jr, kr), flux, &

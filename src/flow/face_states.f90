@@ -58,17 +58,17 @@ contains
     end do
   end subroutine replace_near_closed
 
-  !> Takes the cell values on both sides of faces that have a troubled cell (1 in troubled) on either side.
-  pure subroutine take_cell_values(n, ld, n_var, troubled_left, troubled_right, cells_left, cells_right, left, right)
+  !> Takes the cell values on both sides of faces that have a cell on either side whose trouble is above a level.
+  pure subroutine take_cell_values(n, ld, n_var, level, troubled_left, troubled_right, cells_left, cells_right, left, right)
     integer, intent(in) :: n, ld, n_var
-    real(wp), intent(in) :: troubled_left(n), troubled_right(n), cells_left(ld, *), cells_right(ld, *)
+    real(wp), intent(in) :: level, troubled_left(n), troubled_right(n), cells_left(ld, *), cells_right(ld, *)
     real(wp), intent(inout) :: left(ld, *), right(ld, *)
     integer :: i, v
     do v = 1, n_var
       !$omp simd
       do i = 1, n
-        left(i, v) = merge(cells_left(i, v), left(i, v), troubled_left(i) + troubled_right(i) > 0)
-        right(i, v) = merge(cells_right(i, v), right(i, v), troubled_left(i) + troubled_right(i) > 0)
+        left(i, v) = merge(cells_left(i, v), left(i, v), max(troubled_left(i), troubled_right(i)) > level)
+        right(i, v) = merge(cells_right(i, v), right(i, v), max(troubled_left(i), troubled_right(i)) > level)
       end do
     end do
   end subroutine take_cell_values

@@ -16,8 +16,8 @@ module flow_repair
 
 contains
 
-  !> Marks the troubled cells of a buffer, on all bricks and in their ghosts. suspect: local bricks that have some; is_new: some
-  !> were not marked before. All ranks take part.
+  !> Marks the troubled cells of a buffer, on all bricks and in their ghosts: 1, or 2 those that were marked and are still so.
+  !> suspect: local bricks that have some; is_new: there are new marks. All ranks take part.
   subroutine mark_troubled(mesh, halo, flow, buffer, suspect, is_new)
     type(mesh_type), intent(in) :: mesh
     type(halo_type), intent(inout) :: halo
@@ -43,13 +43,13 @@ contains
       do k = 1, mesh%brick_cells(3)
         do j = 1, mesh%brick_cells(2)
           do i = 1, mesh%brick_cells(1)
-            if (is_closed(flow, b, i, j, k) .or. flow%troubled(b)%a(i, 1, j, k) > 0) cycle
+            if (is_closed(flow, b, i, j, k) .or. flow%troubled(b)%a(i, 1, j, k) > 1) cycle
             associate (cell => flow%w(b, buffer)%a(i, :, j, k))
               if (good(flow, cell, lowest) .and. (flow%n_materials == 1 .or. all(cell(:flow%n_materials) > smallest_mass))) cycle
             end associate
-            flow%troubled(b)%a(i, 1, j, k) = 1
             is_new = .true.
-            call count_repair(mesh, flow, repair_first_order, 1, b, [i, j, k])
+            flow%troubled(b)%a(i, 1, j, k) = flow%troubled(b)%a(i, 1, j, k) + 1
+            if (flow%troubled(b)%a(i, 1, j, k) < 2) call count_repair(mesh, flow, repair_first_order, 1, b, [i, j, k])
           end do
         end do
       end do
