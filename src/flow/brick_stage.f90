@@ -33,7 +33,7 @@ module brick_stage
     logical :: active(3) = [.true., .false., .false.]
     logical :: radial = .false. !< x is a radius
     type(scheme_type) :: scheme
-    logical :: fans = .true. !< faces in strong fans get the exact state
+    logical :: fans = .false. !< faces in strong fans get the exact state
     real(wp) :: trace = 0 !< smallest volume fraction
     real(wp) :: floor_pressure = 0
     real(wp) :: lowest = 0 !< pressures at or below it are bad

@@ -161,7 +161,8 @@ contains
     plan%active = mesh%active
     plan%radial = mesh%radial_power > 0
     plan%scheme = flow%scheme
-    plan%fans = .not. flow%burn_speed > 0 .or. flow%time > flow%burn_end ! what has not burnt has too little heat to expand
+    ! what has not burnt has too little heat to expand
+    plan%fans = flow%scheme%cure_shocks .and. .not. (flow%burn_speed > 0 .and. flow%time <= flow%burn_end)
     plan%trace = flow%trace_fraction
     plan%floor_pressure = flow%floor_pressure
     plan%lowest = flow%lowest_pressure()

@@ -16,6 +16,7 @@ import shock_helium  # noqa: E402
 import shock_panel  # noqa: E402
 import slab  # noqa: E402
 import slab_particles  # noqa: E402
+import slab_pictures  # noqa: E402
 import surface_burst  # noqa: E402
 import taylor  # noqa: E402
 from taylor_reference import measure_reference  # noqa: E402
@@ -26,7 +27,8 @@ TOGETHER = {"building": building.measure_all, "clamped-plate": clamped_plate.mea
             "facade": facade.measure_all, "flat-box": flat_box.measure_all, "fragments": fragments.measure_all,
             "particle-blast": particle_blast.measure_all, "perforation": perforation.measure_all,
             "shock-helium": shock_helium.measure_all, "shock-panel": shock_panel.measure_all,
-            "slab-particles": slab_particles.measure_all, "surface-burst": surface_burst.measure_all, "taylor": taylor.measure_all}
+            "slab-particles": slab_particles.measure_all, "slab-pictures": slab_pictures.draw,
+            "surface-burst": surface_burst.measure_all, "taylor": taylor.measure_all}
 
 if len(sys.argv) > 2 and sys.argv[1] == "taylor-reference":
     measure_reference(sys.argv[2:])

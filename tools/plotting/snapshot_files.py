@@ -18,6 +18,16 @@ def place_text(snapshot, axis, place):
     return f"{AXES[axis]} = {place:.3g}" + ("" if snapshot.length_unit in ("-", "") else f" {snapshot.length_unit}")
 
 
+def by_time(folder, kind):
+    """Files of a kind by the time of their snapshot, in whole microseconds."""
+    found = {}
+    for path in sorted(folder.glob(f"snapshot_{kind}_*.vtkhdf")):
+        snapshot = open_snapshot(path)
+        found[round(1e6 * snapshot.time)] = path
+        snapshot.close()
+    return found
+
+
 def open_snapshot(path):
     """A Flow or a Solid, by what the file says of itself."""
     try:
