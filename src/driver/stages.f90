@@ -18,7 +18,8 @@ module stages
   private
   public :: start_stages, note_load, hold_load, note_motion, flow_has_faded, solid_rests, arrest_solid, pack_stages, unpack_stages
 
-  real(wp), parameter :: round_off = 1e-12_wp !< of the reference pressure on a cell's face: what still fluid may seem to do
+  !> Parts of the reference pressure on a cell's face: what still fluid may seem to do, and what counts as the begin of a load.
+  real(wp), parameter :: round_off = 1e-12_wp, noticeable = 1e-6_wp
 
   !> Where the scene stands, and what has been seen of loads and motion.
   type, public :: stages_type
@@ -30,7 +31,7 @@ module stages
     logical :: solid_over = .false.
     real(wp) :: flow_ended = unset, solid_started = unset, solid_ended = unset !< times
     real(wp) :: load = 0 !< sum over the solid's cells of the size of the force, times time
-    type(record_type) :: loads !< load over time, from the first on
+    type(record_type) :: loads !< load over time, from the first noticeable one on
     real(wp) :: most_motion = 0 !< largest kinetic energy of the solid so far
     type(record_type) :: motions !< kinetic energy over time
     type(flow_totals_type) :: last_flow !< when the flow ended
@@ -71,21 +72,23 @@ contains
     type(mesh_type), intent(in) :: mesh
     type(coupling_type), intent(in) :: coupling
     real(wp), intent(in) :: time, dt
-    real(wp) :: partial(2, mesh%n_local), total(2), force
+    real(wp) :: partial(3, mesh%n_local), total(3), force, whole
     integer :: b, c
     partial = 0
+    whole = abs(coupling%reference_pressure)*minval(coupling%face)
     do b = 1, mesh%n_local
       do c = 1, coupling%list(b)%n
         force = norm2(coupling%list(b)%impulse(:, c))/dt
         partial(1, b) = partial(1, b) + force
-        if (force > round_off*abs(coupling%reference_pressure)*minval(coupling%face)) partial(2, b) = 1
+        if (force > round_off*whole) partial(2, b) = 1
+        if (force > noticeable*whole) partial(3, b) = 1
       end do
     end do
     call reduce_sum(mesh, partial, total)
     if (.not. total(2) > 0) return
-    if (.not. stages%loads%has_begun()) call stages%loads%note(time - dt, 0.0_wp)
+    if (.not. stages%loads%has_begun() .and. total(3) > 0) call stages%loads%note(time - dt, stages%load)
     stages%load = stages%load + dt*total(1)
-    call stages%loads%note(time, stages%load)
+    if (stages%loads%has_begun()) call stages%loads%note(time, stages%load)
     if (stages%solid_waits .and. .not. stages%solid_is_fixed) then
       stages%solid_waits = .false.
       stages%solid_started = time - dt

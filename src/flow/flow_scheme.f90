@@ -12,7 +12,7 @@ module flow_scheme
     integer :: reconstruction = fifth_order
     integer :: limiter = third_order !< of muscl
     logical :: sharpen = .false. !< interfaces by THINC: see interface_sharpening
-    logical :: cure_shocks = .true. !< no carbuncle: see shock_sensor
+    logical :: cure_shocks = .true. !< no carbuncle, see shock_sensor; right starts of jumps, see strong_fans
   end type scheme_type
 
 contains

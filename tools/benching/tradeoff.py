@@ -28,11 +28,12 @@ def write_lines(path, lines):
 
 
 def read_back(path):
-    """The lines of an earlier call; none if there was none."""
+    """The lines of an earlier call; none if there was none, or one of other columns."""
     lines = {}
     if path.exists():
         with open(path, newline="") as file:
-            for row in csv.DictReader(file):
+            rows = csv.DictReader(file)
+            for row in rows if "series" in (rows.fieldnames or []) else []:
                 line = lines.setdefault((row["scene"], row["series"], row["mesh"]), Line(
                     row["scene"], row["series"], row["mesh"], int(row["cells"]), int(row["particles"]),
                     *(float(row[key]) for key in ("user_s", "wall_s", "memory_mb"))))
