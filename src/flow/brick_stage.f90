@@ -301,9 +301,10 @@ contains
         troubled(1, 1, jr, kr), from(1 - back, 1, jl, kl), from(1, 1, jr, kr), left, right)
       if (present(open) .and. stage%fans) then
         call set_fan_states(n(1) + back, ld, layout, eos, normal(1), from(1 - back, c, jl, kl), from(1, c, jr, kr), left, right, &
-          open(1 - back, 1, jl, kl), open(1, 1, jr, kr))
+          s%force, open(1 - back, 1, jl, kl), open(1, 1, jr, kr))
       else if (stage%fans) then
-        call set_fan_states(n(1) + back, ld, layout, eos, normal(1), from(1 - back, c, jl, kl), from(1, c, jr, kr), left, right)
+        call set_fan_states(n(1) + back, ld, layout, eos, normal(1), from(1 - back, c, jl, kl), from(1, c, jr, kr), left, right, &
+          s%force)
       end if
       ! where that was not enough, without fans
       if (present(troubled)) call take_cell_values(n_faces, ld, layout%n_reconstructed, 1.0_wp, troubled(1 - back, 1, jl, kl), &

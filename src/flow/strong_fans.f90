@@ -31,38 +31,55 @@ module strong_fans
 contains
 
   !> Puts the state of the exact solution on both sides of faces in strong fans. n: faces; u: row of the velocity normal to them;
-  !> c_left, c_right: sound speeds of the cells on both sides; left, right: reconstructed rows on both sides. open_left, open_right:
-  !> 0 of closed cells, whose faces are left alone.
-  pure subroutine set_fan_states(n, ld, layout, eos, u, c_left, c_right, left, right, open_left, open_right)
+  !> c_left, c_right: sound speeds of the cells on both sides; left, right: reconstructed rows on both sides; work: scratch.
+  !> open_left, open_right: 0 of closed cells, whose faces are left alone.
+  pure subroutine set_fan_states(n, ld, layout, eos, u, c_left, c_right, left, right, work, open_left, open_right)
     integer, intent(in) :: n, ld, u
     type(layout_type), intent(in) :: layout
     type(eos_type), intent(in) :: eos(layout%n_materials)
     real(wp), intent(in) :: c_left(n), c_right(n)
-    real(wp), intent(inout) :: left(ld, layout%n_reconstructed), right(ld, layout%n_reconstructed)
+    real(wp), intent(inout) :: left(ld, layout%n_reconstructed), right(ld, layout%n_reconstructed), work(n)
     real(wp), intent(in), optional :: open_left(n), open_right(n)
-    real(wp), dimension(layout%n_reconstructed) :: high, low, state
-    logical :: found, up
-    integer :: i, v, r, p
+    integer :: i, r, p
     r = layout%density_row
     p = layout%pressure_row
     if (.not. any_jump(n, left(1, p), right(1, p))) return
+    call look_for_fans(n, 1 + 0.5_wp*minval(eos%grueneisen), left(1, r), left(1, u), left(1, p), c_left, right(1, r), right(1, u), &
+      right(1, p), c_right, work)
     do i = 1, n
+      if (.not. work(i) > 0) cycle
       if (.not. any_jump(1, left(i, p), right(i, p))) cycle ! the same faces, whatever row they stand in
       if (abs(right(i, p) - left(i, p)) <= least_jump*min(left(i, r)*c_left(i)**2, right(i, r)*c_right(i)**2)) cycle
       if (present(open_left)) then
         if (.not. open_left(i)*open_right(i) > 0) cycle
       end if
-      up = left(i, p) > right(i, p)
-      do v = 1, layout%n_reconstructed
-        high(v) = merge(left(i, v), right(i, v), up)
-        low(v) = merge(right(i, v), left(i, v), up)
-      end do
-      call expand(layout, eos, u, merge(1, -1, up), high, low, state, found)
-      if (.not. found) cycle
-      left(i, :) = state
-      right(i, :) = state
+      call set_face(ld, layout, eos, u, left(i, p) > right(i, p), left(i, 1), right(i, 1))
     end do
   end subroutine set_fan_states
+
+  !> Puts that state on both sides of one face, if it lies in a strong fan. up: the pressure is higher on the left.
+  pure subroutine set_face(ld, layout, eos, u, up, left, right)
+    integer, intent(in) :: ld, u
+    type(layout_type), intent(in) :: layout
+    type(eos_type), intent(in) :: eos(layout%n_materials)
+    logical, intent(in) :: up
+    real(wp), intent(inout) :: left(*), right(*) !< every ld-th of them
+    real(wp), dimension(layout%n_reconstructed) :: high, low, state
+    logical :: found
+    integer :: v, at
+    do v = 1, layout%n_reconstructed
+      at = 1 + (v - 1)*ld
+      high(v) = merge(left(at), right(at), up)
+      low(v) = merge(right(at), left(at), up)
+    end do
+    call expand(layout, eos, u, merge(1, -1, up), high, low, state, found)
+    if (.not. found) return
+    do v = 1, layout%n_reconstructed
+      at = 1 + (v - 1)*ld
+      left(at) = state(v)
+      right(at) = state(v)
+    end do
+  end subroutine set_face
 
   !> Whether the pressure changes at one of n faces by more than that part of its lower value, for gases less than r c**2.
   pure logical function any_jump(n, left, right)
@@ -77,6 +94,27 @@ contains
     end do
     any_jump = most > 0
   end function any_jump
+
+  !> Leaves out faces that cannot lie in a strong fan, at little cost: those whose low side a shock to the high pressure would give no
+  !> more speed than the high side has, as faces of shocks. promising: 1 of the others. width: the least that a shock's pressure
+  !> counts in its r (U - u)**2; a part of the sound speeds of the cells stands for those of the faces.
+  pure subroutine look_for_fans(n, width, r_left, u_left, p_left, c_left, r_right, u_right, p_right, c_right, promising)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: width
+    real(wp), intent(in), dimension(n) :: r_left, u_left, p_left, c_left, r_right, u_right, p_right, c_right
+    real(wp), intent(out) :: promising(n)
+    real(wp), parameter :: part_of_bulk = 0.8_wp, part_of_lack = 0.6_wp
+    real(wp) :: rise, r, c, lack
+    integer :: i
+    !$omp simd private(rise, r, c, lack)
+    do i = 1, n
+      rise = abs(p_left(i) - p_right(i))
+      r = merge(r_right(i), r_left(i), p_left(i) > p_right(i))
+      c = merge(c_right(i), c_left(i), p_left(i) > p_right(i))
+      lack = part_of_lack*least_lack*merge(c_left(i), c_right(i), p_left(i) > p_right(i)) + (u_left(i) - u_right(i))
+      promising(i) = merge(1.0_wp, 0.0_wp, rise*rise > max(lack, 0.0_wp)**2*r*(part_of_bulk*r*c*c + width*rise))
+    end do
+  end subroutine look_for_fans
 
   !> Follows the isentrope of the side of the higher pressure down to where it moves at its speed of sound, or as the other side
   !> does at the same pressure. way: 1 if the other side lies above, -1 below. found: it expands much to get there, and moves
