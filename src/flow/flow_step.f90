@@ -161,8 +161,10 @@ contains
     plan%active = mesh%active
     plan%radial = mesh%radial_power > 0
     plan%scheme = flow%scheme
-    ! what has not burnt has too little heat to expand
-    plan%fans = flow%scheme%cure_shocks .and. .not. (flow%burn_speed > 0 .and. flow%time <= flow%burn_end)
+    ! not in several directions, where the steps of a coarse charge would become jets along the mesh; and what has not burnt has too
+    ! little heat to expand
+    plan%fans = flow%scheme%cure_shocks .and. count(mesh%active) == 1 &
+      .and. .not. (flow%burn_speed > 0 .and. flow%time <= flow%burn_end)
     plan%trace = flow%trace_fraction
     plan%floor_pressure = flow%floor_pressure
     plan%lowest = flow%lowest_pressure()
