@@ -8,6 +8,7 @@ module strong_fans
   use equation_of_state, only: eos_type, max_materials
   use flow_layout, only: layout_type
   use kinds, only: wp
+  use mixture, only: cell_fractions
   implicit none
   private
   public :: set_fan_states
@@ -209,17 +210,12 @@ contains
     bulk_modulus = max(bulk_modulus, 0.0_wp)
   end function bulk_modulus
 
-  !> Volume fractions on a face.
+  !> Volume fractions on a face, which reconstruction leaves with a sum near one.
   pure function fractions(layout, values) result(a)
     type(layout_type), intent(in) :: layout
     real(wp), intent(in) :: values(:)
     real(wp) :: a(layout%n_materials)
-    integer :: k
-    a = 1
-    do k = 1, layout%n_fractions
-      a(k) = values(layout%fraction(k))
-    end do
-    if (layout%n_materials == 2) a(2) = 1 - a(1)
+    a = cell_fractions(layout, values)
     if (layout%n_materials > 2) a = a/sum(a)
   end function fractions
 
