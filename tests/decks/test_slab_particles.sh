@@ -3,19 +3,8 @@
 # puts them beside the coupled slab.
 # timeout: 300
 set -u
-source_folder=${BRISANCE_SOURCE:-$(cd "$(dirname "$0")/../.." && pwd)}
-work=$PWD/slab_particles
-passed=0 failed=0
-rm -rf "$work" && mkdir -p "$work" && cd "$work" || exit 1
+source "$(dirname "$0")/../support/checks.sh" slab_particles
 
-check() { # check NAME COMMAND...: the command must succeed
-  local name=$1
-  shift
-  if "$@" >log 2>&1; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "  FAILED: $name"; cat log; fi
-}
-close() { # close VALUE LOW HIGH
-  awk -v v="$1" -v a="$2" -v b="$3" 'BEGIN { exit !(v > a && v < b) }'
-}
 drift() { sed -n "/\"drift\"/,/}/s/.*\"$2\": \([-+.E0-9]*\).*/\1/p" "$1/summary.json"; }
 checksum() { sed -n 's/.*"state_checksum": "\(.*\)".*/\1/p' "$1/summary.json"; }
 figure() { awk -F'|' -v name="$1" -v c="$2" 'index($2, name) { print $c + 0 }' table.md; }

@@ -2,16 +2,8 @@
 # tools/measure building: its figures against those that the files of a short run show.
 # timeout: 180
 set -u
-source_folder=${BRISANCE_SOURCE:-$(cd "$(dirname "$0")/../../.." && pwd)}
-work=$PWD/building
-passed=0 failed=0
-rm -rf "$work" && mkdir -p "$work" && cd "$work" || exit 1
+source "$(dirname "$0")/../../support/checks.sh" building
 
-check() { # check NAME COMMAND...: the command must succeed
-  local name=$1
-  shift
-  if "$@" >log 2>&1; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "  FAILED: $name"; cat log; fi
-}
 close() { # close VALUE REFERENCE TOLERANCE
   awk -v v="$1" -v a="$2" -v t="$3" 'BEGIN { exit !(v > a - t && v < a + t && a != 0) }'
 }

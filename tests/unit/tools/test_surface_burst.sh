@@ -2,19 +2,8 @@
 # tools/measure surface-burst: its curves against the simplified ones of Swisdak (1994), and the table and picture of a short run.
 # timeout: 120
 set -u
-source_folder=${BRISANCE_SOURCE:-$(cd "$(dirname "$0")/../../.." && pwd)}
-work=$PWD/surface_burst
-passed=0 failed=0
-rm -rf "$work" && mkdir -p "$work" && cd "$work" || exit 1
+source "$(dirname "$0")/../../support/checks.sh" surface_burst
 
-check() { # check NAME COMMAND...: the command must succeed
-  local name=$1
-  shift
-  if "$@" >log 2>&1; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "  FAILED: $name"; cat log; fi
-}
-close() { # close VALUE LOW HIGH
-  awk -v v="$1" -v a="$2" -v b="$3" 'BEGIN { exit !(v > a && v < b) }'
-}
 field() { awk -F'|' -v z="$1" -v c="$2" '$2 + 0 == z && NF > 5 { print $c + 0 }' table.md; }
 
 "$BRISANCE_EXE" "$source_folder/input/surface_burst.nml" --output run --quiet --set mesh%cells=300 --set mesh%upper=3.0 \

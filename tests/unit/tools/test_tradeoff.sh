@@ -2,18 +2,9 @@
 # The arithmetic of tools/bench tradeoff, with stand-ins of brisance and flow_bench, and what it measures of made-up runs.
 # timeout: 120
 set -u
-source_folder=${BRISANCE_SOURCE:-$(cd "$(dirname "$0")/../../.." && pwd)}
-work=$PWD/tradeoff
-passed=0 failed=0
-rm -rf "$work" && mkdir -p "$work" && cd "$work" || exit 1
+source "$(dirname "$0")/../../support/checks.sh" tradeoff
 source "$source_folder/tools/setup.sh"
 setup_python >/dev/null || exit 1
-
-check() { # check NAME COMMAND...: the command must succeed
-  local name=$1
-  shift
-  if "$@" >log 2>&1; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "  FAILED: $name"; cat log; fi
-}
 
 # brisance: a tenth too much pressure with lg_cfibm, a tenth too little else; the finest mesh fails.
 cat >brisance <<'END'
